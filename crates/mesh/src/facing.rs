@@ -1,0 +1,159 @@
+//! Which side of a face the viewpoint is on, exactly.
+//!
+//! Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates,
+//! Discrete & Computational Geometry 18(3), 1997, through the crate `robust`.
+
+use std::cmp::Ordering;
+
+use glam::{DVec3, Vec3};
+use num_rational::BigRational;
+use robust::Coord3D;
+
+use crate::{Mesh, Viewpoint};
+
+/// The side of the plane through `corners` on which `viewpoint` lies, exactly.
+///
+/// `Greater`: on the side of the normal, from which the corners run counter-clockwise. `Less`: on
+/// the other. `Equal`: in the plane, or the corners are collinear and span none.
+///
+/// Permuting the corners evenly changes nothing and oddly reverses the answer, so any edge that
+/// asks about a face gets the same one. About 10 ns; microseconds where coordinates of one triangle
+/// differ by more than 2^28 in size and the direction of an orthographic view grazes it.
+pub fn face_side(corners: [Vec3; 3], viewpoint: Viewpoint) -> Ordering {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    if viewpoint.is_point() {
+        return orientation(a, b, c, viewpoint.xyz());
+    }
+    // The sign of det(b − a, c − a, d). Differences of f32 are nearly always exact in f64.
+    let direction = viewpoint.xyz();
+    match (exact_difference(b, a), exact_difference(c, a)) {
+        (Some(u), Some(v)) => orientation(u, v, direction, DVec3::ZERO).reverse(),
+        _ => rational_determinant(a, b, c, direction),
+    }
+}
+
+/// The side of the plane through `corners` on which `point` lies, exactly. See [`face_side`].
+pub fn volume_side(corners: [Vec3; 3], point: Vec3) -> Ordering {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    orientation(a, b, c, point.as_dvec3())
+}
+
+/// The side of every face of `mesh` on which `viewpoint` lies: one exact sign per face.
+/// Replaces what `sides` held.
+pub fn face_sides(mesh: &Mesh, viewpoint: Viewpoint, sides: &mut Vec<Ordering>) {
+    sides.clear();
+    sides
+        .extend(mesh.triangles().iter().map(|t| face_side(t.map(|v| mesh.position(v)), viewpoint)));
+}
+
+/// Whether the corners span a plane: exactly, `false` if and only if they are collinear.
+pub fn has_area(corners: [Vec3; 3]) -> bool {
+    use robust::{Coord, orient2d};
+    // The components of (b − a) × (c − a) are the areas of the three axis-aligned shadows.
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let shadow = |x: usize, y: usize| {
+        let at = |p: DVec3| Coord { x: p[x], y: p[y] };
+        orient2d(at(a), at(b), at(c))
+    };
+    shadow(0, 1) != 0.0 || shadow(1, 2) != 0.0 || shadow(2, 0) != 0.0
+}
+
+/// `Greater` if a, b and c run counter-clockwise seen from d.
+fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
+    let at = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    // Shewchuk's orient3d is positive if d is *below* the plane, hence the exchange.
+    0.0.partial_cmp(&robust::orient3d(at(a), at(b), at(c), at(d))).unwrap_or(Ordering::Equal)
+}
+
+/// p − q if f64 holds every component of it exactly.
+fn exact_difference(p: DVec3, q: DVec3) -> Option<DVec3> {
+    let difference = p - q;
+    // Knuth's two-sum: the rounding error of each difference.
+    let q_seen = p - difference;
+    let error = (p - (difference + q_seen)) + (q_seen - q);
+    (error == DVec3::ZERO).then_some(difference)
+}
+
+/// The sign of det(b − a, c − a, d) in rational arithmetic.
+fn rational_determinant(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
+    let exact = |p: DVec3| p.to_array().map(|x| BigRational::from_float(x).unwrap_or_default());
+    let [a, b, c, d] = [a, b, c, d].map(exact);
+    let u: [_; 3] = std::array::from_fn(|i| &b[i] - &a[i]);
+    let v: [_; 3] = std::array::from_fn(|i| &c[i] - &a[i]);
+    let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
+    let determinant = minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2];
+    determinant.cmp(&BigRational::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const CORNERS: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+
+    #[test]
+    fn counter_clockwise_is_front() {
+        let seen_from = |z| face_side(CORNERS, Viewpoint::at(DVec3::new(0.3, 0.3, z)));
+        assert_eq!(
+            [seen_from(1.0), seen_from(0.0), seen_from(-1.0)],
+            [Ordering::Greater, Ordering::Equal, Ordering::Less]
+        );
+        let seen_along = |z| face_side(CORNERS, Viewpoint::from_direction(DVec3::new(5.0, 3.0, z)));
+        assert_eq!(
+            [seen_along(1e-60), seen_along(0.0), seen_along(-1e-60)],
+            [Ordering::Greater, Ordering::Equal, Ordering::Less]
+        );
+    }
+
+    #[test]
+    fn collinear_corners_have_no_area() {
+        assert!(has_area(CORNERS));
+        assert!(!has_area([Vec3::ONE, Vec3::splat(2.0), Vec3::splat(-7.0)]));
+        assert!(has_area([Vec3::ONE, Vec3::splat(2.0), Vec3::new(-7.0, -7.0, -7.000_000_5)]));
+        assert!(!has_area([Vec3::ONE, Vec3::ONE, Vec3::X]));
+    }
+
+    /// f32 of very different sizes, so that differences do not fit an f64.
+    fn wild() -> impl Strategy<Value = f32> {
+        (-1.0f32..1.0, -40i32..40).prop_map(|(m, e)| m * 2f32.powi(e))
+    }
+
+    fn wild_point() -> impl Strategy<Value = Vec3> {
+        [wild(), wild(), wild()].prop_map(Vec3::from_array)
+    }
+
+    proptest! {
+        /// A direction built to lie in the plane up to the rounding of a few f64 operations: the
+        /// sign there is noise unless it is exact.
+        #[test]
+        fn grazing_directions_agree_with_rational_arithmetic(
+            a in wild_point(), b in wild_point(), c in wild_point(), s in -2.0f64..2.0, t in -2.0f64..2.0,
+        ) {
+            let [p, q, r] = [a, b, c].map(|p| p.as_dvec3());
+            let direction = s * (q - p) + t * (r - p);
+            let expected = rational_determinant(p, q, r, direction);
+            prop_assert_eq!(face_side([a, b, c], Viewpoint::from_direction(direction)), expected);
+            prop_assert_eq!(face_side([b, c, a], Viewpoint::from_direction(direction)), expected);
+            prop_assert_eq!(face_side([b, a, c], Viewpoint::from_direction(direction)), expected.reverse());
+        }
+
+        #[test]
+        fn grazing_points_agree_with_rational_arithmetic(
+            a in wild_point(), b in wild_point(), c in wild_point(), s in -2.0f64..2.0, t in -2.0f64..2.0,
+        ) {
+            let [p, q, r] = [a, b, c].map(|p| p.as_dvec3());
+            let point = p + s * (q - p) + t * (r - p);
+            let exact = |v: DVec3| v.to_array().map(|x| BigRational::from_float(x).unwrap());
+            let ([p, q, r], at) = ([p, q, r].map(exact), exact(point));
+            let u: [_; 3] = std::array::from_fn(|i| &q[i] - &p[i]);
+            let v: [_; 3] = std::array::from_fn(|i| &r[i] - &p[i]);
+            let d: [_; 3] = std::array::from_fn(|i| &at[i] - &p[i]);
+            let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
+            let determinant = minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2];
+            let expected = determinant.cmp(&BigRational::default());
+            prop_assert_eq!(face_side([a, b, c], Viewpoint::at(point)), expected);
+            prop_assert_eq!(face_side([b, a, c], Viewpoint::at(point)), expected.reverse());
+        }
+    }
+}
