@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use glam::Vec3;
+
 use crate::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, Wing, face_side, face_sides};
 
 /// Writes to `contours` the contour edges of `mesh` seen from `viewpoint`, among those that
@@ -36,13 +38,11 @@ pub fn contour_edges(
 }
 
 /// Whether the edge of `wing` is a contour edge seen from `viewpoint`, exactly: the same answer as
-/// [`contour_edges`], from four positions. `false` on a boundary edge.
-pub fn is_contour(mesh: &Mesh, wing: &Wing, viewpoint: Viewpoint) -> bool {
-    if wing.right == Wing::NONE {
-        return false;
-    }
-    let is_front = |face: [u32; 3]| is_front(face_side(face.map(|v| mesh.position(v)), viewpoint));
-    is_front(wing.left_face()) != is_front(wing.right_face())
+/// [`contour_edges`], from four of the mesh's `positions`. `false` on a boundary edge.
+pub fn is_contour(positions: &[Vec3], wing: &Wing, viewpoint: Viewpoint) -> bool {
+    let seen = |face: [u32; 3]| face_side(face.map(|v| positions[v as usize]), viewpoint);
+    wing.right != Wing::NONE
+        && is_front(seen(wing.left_face())) != is_front(seen(wing.right_face()))
 }
 
 /// Replaces `pairs` by the ends of `edges` as sorted vertex pairs, lower index first, none twice:

@@ -1,0 +1,14 @@
+//! Counts that extractors report.
+
+/// What an extraction did, in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Patches whose bound was tested; 0 for brute force.
+    pub patches_tested: usize,
+    /// Survivors: patches that may hold a contour edge.
+    pub patches_accepted: usize,
+    /// Edges tested one by one: those of the survivors and those that are always tested.
+    pub edges_tested: usize,
+    /// Wings found to be contour edges. A non-manifold edge counts once for each of its wings.
+    pub contour_edges: usize,
+}
