@@ -1,0 +1,312 @@
+//! The command line, as `--help` shows it.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use drypoint_mesh::EdgeFilter;
+use glam::DVec3;
+
+/// Draws the contours of triangle meshes as clean vectors, hidden lines removed
+#[derive(Debug, Parser)]
+#[command(name = "drypoint", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXAMPLES: &str = "\
+MODEL is an OBJ, PLY, STL, glTF or GLB file, or shape:NAME[:TRIANGLES] for a built-in shape.
+
+Examples:
+  drypoint draw                                      a built-in shape, to torus-knot.svg
+  drypoint draw bunny.obj -o bunny.svg
+  drypoint extract bunny.obj --eye 0,0.1,2 --json
+  drypoint info scan.ply
+
+Exit status: 0, or 1 with one line that says what is wrong; 130 after Ctrl-C.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Draw the visible lines of a model as SVG or PNG
+    Draw(Box<DrawArgs>),
+    /// Group the edges of a model into patches and save them
+    Patches(PatchesArgs),
+    /// Find the contour edges seen from a viewpoint
+    Extract(ExtractArgs),
+    /// Report what a model is made of
+    Info(InfoArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  drypoint draw bunny.obj -o bunny.svg
+  drypoint draw part.stl --lines contour,crease --crease-angle 20 --view iso --ortho --up 0,0,1
+  drypoint draw hall.obj --eye 0,2,0 --target 10,2,0 --fov 70 -o hall.png --size 1600x900
+  drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png")]
+pub(crate) struct DrawArgs {
+    /// Mesh file, or shape:NAME[:TRIANGLES]
+    #[arg(default_value = "shape:torus-knot:20000")]
+    pub(crate) model: PathBuf,
+    /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg,
+    /// in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Print chains, segments, visible and hidden length in pixels of each class as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
+    #[command(flatten)]
+    pub(crate) lines: LineArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "View")]
+pub(crate) struct ViewArgs {
+    /// Where to look from, in the file's own coordinates
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["view", "azimuth", "elevation", "distance"])]
+    pub(crate) eye: Option<DVec3>,
+    /// Where to look at [default: center of the bounding box]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) target: Option<DVec3>,
+    /// Direction that points up on the page [default: 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number)]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) fov: f64,
+    /// Look from this side, at a distance that fills the page [default: iso]
+    #[arg(long, value_enum, conflicts_with_all = ["azimuth", "elevation"])]
+    pub(crate) view: Option<Side>,
+    /// Look from this angle around the up axis, in degrees: 0 from the front, 90 from the right
+    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) azimuth: Option<f64>,
+    /// Look from this angle above the horizon, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) elevation: Option<f64>,
+    /// Distance from the target, in the file's unit [default: so that the model fills the page]
+    #[arg(long, value_name = "D", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) distance: Option<f64>,
+    /// Draw without perspective
+    #[arg(long)]
+    pub(crate) ortho: bool,
+    /// Height of the page in the file's unit, without perspective [default: so that the model
+    /// fills the page]
+    #[arg(long, value_name = "H", value_parser = number, requires = "ortho")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) height: Option<f64>,
+    /// Size of the page in pixels
+    #[arg(long, value_name = "WxH", default_value = "1000x1000", value_parser = size)]
+    pub(crate) size: [u32; 2],
+    /// Free border around a model that fills the page, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 40.0, value_parser = number)]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) margin: f64,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Lines")]
+pub(crate) struct LineArgs {
+    /// Classes of lines to draw
+    #[arg(long, value_enum, value_delimiter = ',', default_values = ["contour", "boundary"])]
+    pub(crate) lines: Vec<Class>,
+    /// Draw edges that bend by this angle or more as creases, in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number)]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) crease_angle: f64,
+    /// What to do with hidden lines
+    #[arg(long, value_enum, default_value = "none")]
+    pub(crate) hidden: Hidden,
+    /// Width of the lines in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1.5, value_parser = number)]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) width: f64,
+    /// Color of the lines, as in CSS: black, #1a2b3c, rgb(10 20 30)
+    #[arg(long, value_name = "COLOR", default_value = "black")]
+    pub(crate) color: String,
+    /// Color of the page, as in CSS, or none [default: none for SVG, white for PNG]
+    #[arg(long, value_name = "COLOR")]
+    pub(crate) background: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  drypoint patches bunny.obj -o bunny.patches
+  drypoint patches bunny.obj -o bunny.patches --sphere mean --partition 512 --json
+  drypoint extract bunny.patches --eye 0,0.1,2 --json
+
+With --json prints one object: edges, patches, mean_half_angle and max_half_angle in degrees,
+mean_t in the file's unit, expected_cost in edge tests a view, build_seconds, peak_memory in bytes.")]
+pub(crate) struct PatchesArgs {
+    /// Mesh file, or shape:NAME[:TRIANGLES]
+    pub(crate) model: PathBuf,
+    /// File to write, by custom ending in .patches
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Print what was built as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Edges to group: those that can be seen as contours, or all
+    #[arg(long, value_enum, default_value = "convex")]
+    pub(crate) edges: Edges,
+    #[command(flatten)]
+    pub(crate) fusion: FusionArgs,
+}
+
+/// How patches are built.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Fusion")]
+pub(crate) struct FusionArgs {
+    /// Sphere of a patch's bound
+    #[arg(long, value_enum, default_value = "reduced")]
+    pub(crate) sphere: SphereKind,
+    /// Most edges that are fused as one group: more is slower and better; none for all at once
+    #[arg(long, value_name = "EDGES|none", default_value = "4096", value_parser = partition)]
+    pub(crate) partition: Partition,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  drypoint extract bunny.obj --eye 0,0.1,2
+  drypoint extract bunny.obj --direction 0,0,1 --edges all --json
+  drypoint extract bunny.patches --eye 0,0.1,2 --json
+
+Prints a pair of vertices a line, lower index first, sorted; what was tested goes to standard error.
+With --json prints one object: method, edges, patches, patches_tested, patches_accepted,
+edges_tested, contour_edges, contour. Vertices are counted from 0 in the file's own order (OBJ: v
+lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices
+at one position the first is named.")]
+pub(crate) struct ExtractArgs {
+    /// Mesh file, shape:NAME[:TRIANGLES], or a .patches file
+    pub(crate) model: PathBuf,
+    /// Where to look from, in the file's own coordinates
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(required_unless_present = "direction", conflicts_with = "direction")]
+    pub(crate) eye: Option<DVec3>,
+    /// Look without perspective: the direction from the model towards the viewer
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) direction: Option<DVec3>,
+    /// How to find them [default: patches for a .patches file, else brute-force]
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<Method>,
+    /// Edges to look at: those that can be seen as contours, or all [default: convex, or those of
+    /// the .patches file]
+    #[arg(long, value_enum)]
+    pub(crate) edges: Option<Edges>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) fusion: FusionArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// Mesh file, or shape:NAME[:TRIANGLES]
+    pub(crate) model: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// List the position of every vertex, in the order that `extract` counts in
+    #[arg(long)]
+    pub(crate) vertices: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Side {
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+    Iso,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Class {
+    Contour,
+    Boundary,
+    Crease,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Hidden {
+    None,
+    Dashed,
+    Solid,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    BruteForce,
+    Patches,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Edges {
+    Convex,
+    All,
+}
+
+impl From<Edges> for EdgeFilter {
+    fn from(edges: Edges) -> Self {
+        match edges {
+            Edges::Convex => Self::Convex,
+            Edges::All => Self::All,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum SphereKind {
+    Mean,
+    Reduced,
+}
+
+/// Most edges fused as one group; `None` for no limit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Partition(pub(crate) Option<u32>);
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) => Err("the number must be finite".to_owned()),
+        Err(_) => Err("this is no number".to_owned()),
+    }
+}
+
+fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [x, y, z] if numbers.iter().all(|n| n.abs() <= f64::from(f32::MAX)) => {
+            Ok(DVec3::new(x, y, z))
+        }
+        [_, _, _] => Err(format!("coordinates must be within ±{:e}", f32::MAX)),
+        _ => Err(format!("three numbers with commas are wanted, not {}", numbers.len())),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    /// Most pixels a side: a PNG of this size is 1 GiB in memory.
+    const MOST: u32 = 16_384;
+    let parts = text.split_once(['x', 'X', '×']).ok_or("WIDTHxHEIGHT is wanted, as 800x600")?;
+    let side = |text: &str| match text.trim().parse() {
+        Ok(pixels) if (1..=MOST).contains(&pixels) => Ok(pixels),
+        _ => Err(format!("'{text}' is no number of pixels from 1 to {MOST}")),
+    };
+    Ok([side(parts.0)?, side(parts.1)?])
+}
+
+fn partition(text: &str) -> Result<Partition, String> {
+    match text.parse() {
+        _ if text == "none" => Ok(Partition(None)),
+        Ok(edges) if edges >= 2 => Ok(Partition(Some(edges))),
+        _ => Err("a number of edges from 2, or none, is wanted".to_owned()),
+    }
+}

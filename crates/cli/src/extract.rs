@@ -1,0 +1,127 @@
+//! `drypoint extract`: the contour edges seen from a viewpoint.
+
+use drypoint_cpu::{BruteForce, Statistics, extract_all_wings, extract_patches};
+use drypoint_fusion::PatchSet;
+use drypoint_mesh::{EdgeFilter, EdgeId, Viewpoint};
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::args::{ExtractArgs, Method};
+use crate::output::{print, print_json};
+use crate::patches;
+use crate::source::{Source, is_patches_file, load_patches};
+
+/// What was found, in the shape that scripts read.
+#[derive(Debug, Serialize)]
+struct Found {
+    method: &'static str,
+    edges: usize,
+    patches: usize,
+    patches_tested: usize,
+    patches_accepted: usize,
+    edges_tested: usize,
+    contour_edges: usize,
+    contour: Vec<[u32; 2]>,
+}
+
+pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
+    let viewpoint = viewpoint(args)?;
+    let found = if is_patches_file(&args.model) {
+        from_patch_file(args, viewpoint)?
+    } else {
+        from_mesh(args, viewpoint)?
+    };
+    if args.json {
+        return print_json(&found);
+    }
+    let lines: String = found.contour.iter().map(|[a, b]| format!("{a} {b}\n")).collect();
+    print(lines.as_bytes())?;
+    eprintln!(
+        "{}: {} contour edges; {} of {} edges and {} of {} patches tested, {} accepted",
+        found.method,
+        found.contour_edges,
+        found.edges_tested,
+        found.edges,
+        found.patches_tested,
+        found.patches,
+        found.patches_accepted
+    );
+    Ok(())
+}
+
+fn viewpoint(args: &ExtractArgs) -> Result<Viewpoint, String> {
+    match (args.eye, args.direction) {
+        (_, Some(DVec3::ZERO)) => Err("--direction 0,0,0 is no direction".to_owned()),
+        (_, Some(direction)) => Ok(Viewpoint::from_direction(direction)),
+        (eye, None) => Ok(Viewpoint::at(eye.unwrap_or_default())),
+    }
+}
+
+fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
+    let source = Source::load(&args.model)?;
+    let adjacency = source.adjacency();
+    let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
+    let mut contours = Vec::new();
+    if args.method == Some(Method::Patches) {
+        let built = patches::build(&source, &adjacency, filter, &args.fusion)?;
+        let statistics = extract_patches(&built, viewpoint, &mut contours);
+        return Ok(with_patches(&built, statistics, &contours));
+    }
+    let mut brute_force = BruteForce::new(source.mesh(), &adjacency, filter);
+    let statistics = brute_force.extract(viewpoint, &mut contours);
+    let ends = contours.iter().map(|&edge| adjacency.wing(edge).ends());
+    Ok(found("brute-force", (brute_force.edge_count(), 0), statistics, ends.collect()))
+}
+
+fn from_patch_file(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
+    let patches = load_patches(&args.model)?;
+    if let Some(wanted) = args.edges
+        && EdgeFilter::from(wanted) != patches.edge_filter()
+    {
+        return Err(format!(
+            "{}: holds the patches of {} edges; leave --edges out, or build it anew",
+            args.model.display(),
+            match patches.edge_filter() {
+                EdgeFilter::Convex => "convex",
+                EdgeFilter::All => "all",
+            }
+        ));
+    }
+    let mut contours = Vec::new();
+    if args.method == Some(Method::BruteForce) {
+        let statistics = extract_all_wings(&patches, viewpoint, &mut contours);
+        return Ok(Found { method: "brute-force", ..with_patches(&patches, statistics, &contours) });
+    }
+    let statistics = extract_patches(&patches, viewpoint, &mut contours);
+    Ok(with_patches(&patches, statistics, &contours))
+}
+
+fn with_patches(patches: &PatchSet, statistics: Statistics, contours: &[EdgeId]) -> Found {
+    let mut is_contour = contours.to_vec();
+    is_contour.sort_unstable();
+    let wings = patches.wings().iter().zip(patches.edge_ids());
+    let seen = wings.filter(|(_, edge)| is_contour.binary_search(edge).is_ok());
+    let pairs = seen.map(|(wing, _)| wing.ends()).collect();
+    found("patches", (patches.wings().len(), patches.patches().len()), statistics, pairs)
+}
+
+/// Sorts the pairs and leaves one of those that several wings of a non-manifold edge share.
+fn found(
+    method: &'static str,
+    (edges, patches): (usize, usize),
+    statistics: Statistics,
+    mut contour: Vec<[u32; 2]>,
+) -> Found {
+    contour.sort_unstable();
+    contour.dedup();
+    Found {
+        method,
+        edges,
+        patches,
+        patches_tested: statistics.patches_tested,
+        patches_accepted: statistics.patches_accepted,
+        edges_tested: statistics.edges_tested,
+        contour_edges: contour.len(),
+        contour,
+    }
+}

@@ -1,0 +1,105 @@
+//! From where meshes are looked at.
+
+use drypoint_mesh::{Mesh, Viewpoint};
+use glam::{DVec3, Vec3};
+
+/// Distances of the measuring protocol of Tsiapkolis and Bénard (CGF 2024, §4.3), in units of half
+/// the longest side of the mesh's box.
+pub const DISTANCES: [f64; 6] = [5.0, 10.0, 25.0, 50.0, 75.0, 100.0];
+
+/// The 42 vertices of an icosahedron subdivided once, on the unit sphere.
+pub fn directions() -> Vec<DVec3> {
+    // The vertices of an icosahedron: all (0, ±1, ±φ) and their cyclic permutations.
+    let golden = 0.5 * (1.0 + 5f64.sqrt());
+    let mut corners = Vec::new();
+    for (i, j) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        corners.push(DVec3::new(0.0, i, j * golden));
+        corners.push(DVec3::new(i, j * golden, 0.0));
+        corners.push(DVec3::new(j * golden, 0.0, i));
+    }
+    // Its edges are 2 long; the next distance between corners is 2 φ.
+    let mut directions = corners.clone();
+    for (index, a) in corners.iter().enumerate() {
+        let neighbours = corners[index + 1..].iter().filter(|b| a.distance(**b) < 2.5);
+        directions.extend(neighbours.map(|b| a + b));
+    }
+    directions.into_iter().map(DVec3::normalize).collect()
+}
+
+/// The 252 viewpoints of the protocol: 42 directions × 6 distances around the mesh. Empty for a
+/// mesh without triangles.
+pub fn protocol(mesh: &Mesh) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds() else { return Vec::new() };
+    let (center, unit) = (bounds.center(), bounds.half_longest_side());
+    let around = |distance: f64| {
+        directions().into_iter().map(move |d| Viewpoint::at(center + unit * distance * d))
+    };
+    DISTANCES.into_iter().flat_map(around).collect()
+}
+
+/// Orthographic views: the 42 directions and the six axes, which many faces of made things graze.
+pub fn orthographic() -> Vec<Viewpoint> {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    directions().into_iter().chain(axes).map(Viewpoint::from_direction).collect()
+}
+
+/// Viewpoints where ties and near misses live: on vertices, on edges, on faces, in the planes of
+/// faces outside them, a hair beside those planes, and in the middle of the mesh. About `6 * count`
+/// of them, spread over the mesh's triangles.
+pub fn hostile(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds() else { return Vec::new() };
+    let triangles = mesh.triangles();
+    let mut viewpoints = vec![Viewpoint::at(bounds.center())];
+    for index in 0..count.min(triangles.len()) {
+        let triangle = triangles[index * triangles.len() / count.min(triangles.len())];
+        let [a, b, c] = triangle.map(|v| mesh.position(v).as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let hair = 1e-7 * (a.length() + (b - a).length());
+        let outside = a + 7.0 * (b - a) - 5.0 * (c - a);
+        let middle = (a + b + c) / 3.0;
+        viewpoints.extend(
+            [a, 0.5 * (a + b), middle, outside, outside + hair * normal, outside - hair * normal]
+                .map(Viewpoint::at),
+        );
+    }
+    viewpoints
+}
+
+/// Viewpoints on, in and beside the surface, which the protocol leaves out: at a few distances
+/// along the normals of triangles spread over the mesh, in units of half the longest side.
+pub fn near(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds() else { return Vec::new() };
+    let triangles = mesh.triangles();
+    let count = count.min(triangles.len());
+    let mut viewpoints = Vec::new();
+    for index in 0..count {
+        let corners: [Vec3; 3] = triangles[index * triangles.len() / count].map(|v| mesh.position(v));
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let heights = [-0.1, 0.0, 0.01, 0.1, 0.5, 1.0];
+        let height = heights[index % heights.len()] * bounds.half_longest_side();
+        viewpoints.push(Viewpoint::at((a + b + c) / 3.0 + height * normal));
+    }
+    viewpoints
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use drypoint_mesh::shapes;
+
+    #[test]
+    fn there_are_42_directions_all_different() {
+        let directions = directions();
+        assert_eq!(directions.len(), 42);
+        for (index, a) in directions.iter().enumerate() {
+            assert!(directions[..index].iter().all(|b| a.distance(*b) > 0.5), "{a} twice");
+        }
+        assert!(directions.iter().sum::<DVec3>().length() < 1e-9, "not even");
+    }
+
+    #[test]
+    fn the_protocol_has_252_viewpoints() {
+        assert_eq!(protocol(&shapes::icosphere(20)).len(), 252);
+    }
+}
