@@ -144,7 +144,7 @@ mean_t in the file's unit, expected_cost in edge tests a view, build_seconds, pe
 pub(crate) struct PatchesArgs {
     /// Mesh file, or shape:NAME[:TRIANGLES]
     pub(crate) model: PathBuf,
-    /// File to write, by custom ending in .patches
+    /// File to write, usually ending in .patches
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Print what was built as JSON
