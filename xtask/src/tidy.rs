@@ -118,6 +118,7 @@ pub(crate) fn check(root: &Path) -> Result<(), String> {
             println!("{files} files are tidy by {} rules", RULES.len());
             Ok(())
         }
+        1 => Err(format!("1 finding in {files} files")),
         _ => Err(format!("{count} findings in {files} files")),
     }
 }
@@ -136,7 +137,7 @@ mod tests {
         let sound = testing::plant(&[]);
         assert_eq!(check(sound.path()), Ok(()));
         let broken = testing::plant(&[("crates/mesh/src/a.rs", "fn a() {}")]);
-        assert_eq!(check(broken.path()), Err("1 findings in 7 files".to_owned()));
+        assert_eq!(check(broken.path()), Err("1 finding in 7 files".to_owned()));
     }
 
     /// The guide for contributors names every rule, in this order.

@@ -92,11 +92,11 @@ struct Function {
     parameters: usize,
 }
 
-/// A line `// Long because …` in the function or in the comment above it.
+/// A line `// Long because …` in the function or in the comments and attributes above it.
 fn explains_length(text: &str, function: &Function) -> bool {
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
     let above = lines[..function.first_line - 1].iter().rev();
-    let comment = above.take_while(|line| line.starts_with("//"));
+    let comment = above.take_while(|line| line.starts_with("//") || line.starts_with("#["));
     let own = &lines[function.first_line - 1..function.last_line];
     comment.chain(own).any(|line| line.starts_with("// Long because "))
 }
@@ -240,6 +240,10 @@ mod tests {
                 A,
                 &format!("// Long because of its cases.\n/// Docs.\n#[inline]\n{}", function(61)),
             )],
+            &[],
+        );
+        check(
+            &[(A, &format!("a! {{\n// Long because it is.\n#[test]\n{}}}\n", function(61)))],
             &[],
         );
         check(&[(A, &function(61).replacen("// A line.", "// Long because it is.", 1))], &[]);

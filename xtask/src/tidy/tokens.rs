@@ -64,11 +64,21 @@ fn unfinished_pair(first: &TokenTree, second: &TokenTree) -> Option<String> {
         (TokenTree::Punct(mark), TokenTree::Group(group))
             if mark.as_char() == '#' && group.delimiter() == Delimiter::Bracket =>
         {
-            let word = group.stream().into_iter().next()?;
-            is_word(&word, "ignore").then(|| "a test that does not run".to_owned())
+            is_ignore(group.stream()).then(|| "a test that does not run".to_owned())
         }
         _ => None,
     }
+}
+
+/// `ignore`, `ignore = "…"` or `cfg_attr(…, ignore)`.
+fn is_ignore(attribute: TokenStream) -> bool {
+    let mut tokens = attribute.into_iter();
+    let Some(name) = tokens.next() else { return false };
+    let is_in_condition = |token: TokenTree| match token {
+        TokenTree::Group(group) => group.stream().into_iter().any(|t| is_word(&t, "ignore")),
+        _ => false,
+    };
+    is_word(&name, "ignore") || is_word(&name, "cfg_attr") && tokens.any(is_in_condition)
 }
 
 /// Hands over the tokens of each nesting level, outer levels first.
@@ -135,6 +145,7 @@ mod tests {
         check(&[(A, "fn a() {\n    std::unimplemented!()\n}\n")], found);
         check(&[(A, "fn a() {\n    b(dbg!(1))\n}\n")], found);
         check(&[(A, "#[test]\n#[ignore]\nfn a() {}\n")], found);
+        check(&[(A, "#[test]\n#[cfg_attr(windows, ignore)]\nfn a() {}\n")], found);
         check(&[(A, "proptest! {\n    #[ignore = \"slow\"]\n    fn a() {}\n}\n")], found);
         check(&[(A, "/// Not `todo!`.\nfn a() -> &'static str {\n    \"dbg!\"\n}\n")], &[]);
     }
