@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use drypoint_lines::LineClass;
 use drypoint_mesh::EdgeFilter;
 use glam::DVec3;
 
@@ -233,6 +234,16 @@ pub(crate) enum Class {
     Contour,
     Boundary,
     Crease,
+}
+
+impl From<Class> for LineClass {
+    fn from(class: Class) -> Self {
+        match class {
+            Class::Contour => Self::Contour,
+            Class::Boundary => Self::Boundary,
+            Class::Crease => Self::Crease,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
