@@ -1,1 +1,27 @@
-//! Placeholder docs.
+//! docs
+
+mod camera;
+mod chain;
+mod color;
+mod drawing;
+#[cfg(feature = "visibility")]
+mod occluders;
+#[cfg(feature = "png")]
+mod png;
+mod segments;
+#[cfg(feature = "svg")]
+mod svg;
+mod trace;
+
+pub use camera::{Camera, CameraError, Page};
+pub use chain::{Chain, chain};
+pub use color::Color;
+pub use drawing::{Drawing, HiddenLines, Layer, Style};
+#[cfg(feature = "visibility")]
+pub use occluders::Occluders;
+#[cfg(feature = "png")]
+pub use png::{PngError, to_png};
+pub use segments::{LineClass, LineOptions, Segment, Segments};
+#[cfg(feature = "svg")]
+pub use svg::to_svg;
+pub use trace::{Run, VisibilityParams};

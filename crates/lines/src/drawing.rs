@@ -1,0 +1,145 @@
+//! Everything that is on the page, and how to ink it.
+
+use drypoint_mesh::Mesh;
+
+use crate::trace::{self, IsHidden};
+use crate::{Camera, Chain, Color, LineClass, Page, Run, Segments, VisibilityParams, chain};
+
+/// The lines of one view, projected, by class.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// The paper.
+    pub page: Page,
+    /// One entry per [`LineClass`], in the order of [`LineClass::ALL`].
+    pub layers: Vec<Layer>,
+}
+
+/// The lines of one class.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// What they are.
+    pub class: LineClass,
+    /// Polylines on the mesh.
+    pub chains: usize,
+    /// Edges in them.
+    pub segments: usize,
+    /// What of them is on the page, visible or hidden, chain by chain.
+    pub runs: Vec<Run>,
+}
+
+impl Layer {
+    /// Pixels of line that nothing hides.
+    pub fn visible_length(&self) -> f64 {
+        self.length(true)
+    }
+
+    /// Pixels of line on the page that is hidden.
+    pub fn hidden_length(&self) -> f64 {
+        self.length(false)
+    }
+
+    fn length(&self, visible: bool) -> f64 {
+        self.runs.iter().filter(|run| run.visible == visible).map(Run::length).sum()
+    }
+}
+
+impl Drawing {
+    /// Chains and projects `segments`. Nothing hides anything: a view through glass.
+    pub fn through_glass(mesh: &Mesh, segments: &Segments, camera: &Camera) -> Self {
+        // A single sample per segment, which sees everything.
+        let params = VisibilityParams { step: f64::INFINITY, ..Default::default() };
+        Self::trace(mesh, segments, camera, &params, &mut |_, _| false)
+    }
+
+    /// Chains and projects `segments`, and finds what of them is visible. About two lines of sight
+    /// per segment and one per pixel, of a microsecond or two each.
+    #[cfg(feature = "visibility")]
+    pub fn new(
+        occluders: &crate::Occluders<'_>,
+        segments: &Segments,
+        camera: &Camera,
+        params: &VisibilityParams,
+    ) -> Self {
+        let mut sightlines = occluders.sightlines(camera.viewpoint());
+        Self::trace(occluders.mesh(), segments, camera, params, &mut |ends, fraction| {
+            sightlines.set_edge(ends);
+            sightlines.is_hidden(fraction)
+        })
+    }
+
+    fn trace(
+        mesh: &Mesh,
+        segments: &Segments,
+        camera: &Camera,
+        params: &VisibilityParams,
+        is_hidden: &mut IsHidden<'_>,
+    ) -> Self {
+        let layers = LineClass::ALL.map(|class| {
+            let segments = segments.of(class);
+            let chains = chain(mesh, segments);
+            let mut runs_of = |chain: &Chain| trace::runs(mesh, chain, camera, params, is_hidden);
+            let runs = chains.iter().flat_map(&mut runs_of).collect();
+            Layer { class, chains: chains.len(), segments: segments.len(), runs }
+        });
+        Self { page: camera.page(), layers: layers.into() }
+    }
+
+    /// The layers and runs in the order in which they are inked: hidden lines first, then creases
+    /// under boundaries under contours.
+    #[cfg(any(feature = "svg", feature = "png"))]
+    pub(crate) fn inked(&self, style: &Style) -> impl Iterator<Item = (&Layer, bool, Vec<&Run>)> {
+        let hidden = (style.hidden != HiddenLines::None).then_some(false);
+        hidden
+            .into_iter()
+            .chain([true])
+            .flat_map(|visible| self.layers.iter().rev().map(move |layer| (layer, visible)))
+            .map(|(layer, visible)| {
+                (layer, visible, layer.runs.iter().filter(|r| r.visible == visible).collect())
+            })
+    }
+}
+
+/// How to ink a [`Drawing`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Style {
+    /// Stroke width in pixels, above 0. Hidden lines are half as wide.
+    pub width: f64,
+    /// Of the lines.
+    pub color: Color,
+    /// Fills the page. `None` is what the medium has: nothing behind an SVG, white in a PNG.
+    pub background: Option<Color>,
+    /// What to do with hidden lines.
+    pub hidden: HiddenLines,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self { width: 1.5, color: Color::BLACK, background: None, hidden: HiddenLines::None }
+    }
+}
+
+/// What to do with lines that are hidden.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HiddenLines {
+    /// They are not drawn.
+    #[default]
+    None,
+    /// Dashed, 4 stroke widths on and 3 off.
+    Dashed,
+    /// As thin lines.
+    Solid,
+}
+
+#[cfg(any(feature = "svg", feature = "png"))]
+impl Style {
+    /// Stroke width of visible or of hidden lines.
+    pub(crate) fn width_of(&self, visible: bool) -> f64 {
+        if visible { self.width } else { 0.5 * self.width }
+    }
+
+    /// Lengths of dash and gap, if there are any.
+    pub(crate) fn dashes(&self, visible: bool) -> Option<[f64; 2]> {
+        let dashed = !visible && self.hidden == HiddenLines::Dashed;
+        dashed.then(|| [4.0, 3.0].map(|widths| widths * self.width))
+    }
+}
