@@ -62,8 +62,9 @@ impl NormalCone {
         let (mut sin_squared, mut cos) = (0f64, 1f64);
         for normal in normals {
             let normal_cos = normal.dot(axis);
-            // Written so that NaN opens the cone.
-            if !(normal_cos > 0.0 && is_unit(normal)) {
+            // NaN is neither positive nor of unit length.
+            let is_held = normal_cos > 0.0 && is_unit(normal);
+            if !is_held {
                 return Self::OPEN;
             }
             sin_squared = sin_squared.max(normal.cross(axis).length_squared());
@@ -103,8 +104,7 @@ impl NormalCone {
 
     /// Whether it holds a hemisphere or more, so that it says nothing.
     pub fn is_open(&self) -> bool {
-        // Not `<=`, so that NaN is open.
-        !(self.cos > 0.0)
+        self.sin.is_nan() || self.cos.is_nan() || self.cos <= 0.0
     }
 
     /// α in radians, 0 ..= π/2.

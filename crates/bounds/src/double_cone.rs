@@ -104,9 +104,10 @@ impl DoubleCone {
         // As a vector: the difference of squares |to_viewpoint|² − height² is noise near the axis.
         let across = to_viewpoint - height * self.axis;
         let clearance = height.abs() - w * self.apex_distance;
-        // Written so that NaN, and infinity on both sides, survive.
-        !(clearance > MIN_CLEARANCE
-            && clearance * clearance > self.tan_squared * across.length_squared())
+        // NaN, and infinity on both sides, are not culled.
+        let is_culled = clearance > MIN_CLEARANCE
+            && clearance * clearance > self.tan_squared * across.length_squared();
+        !is_culled
     }
 
     /// Probability that it survives, for viewpoints at `distance` from its center in a direction
@@ -132,8 +133,7 @@ impl From<SpatializedNormalCone> for DoubleCone {
         let (axis, center) = (cone.axis.as_vec3(), sphere.center.as_vec3());
         let tilt = axis.as_dvec3().cross(cone.axis).length();
         let shift = center.as_dvec3().distance(sphere.center);
-        // Written so that NaN is never culled.
-        if !(cone.half_angle() <= MAX_HALF_ANGLE && is_unit(axis)) {
+        if cone.half_angle() > MAX_HALF_ANGLE || !is_unit(axis) {
             return Self::ALWAYS;
         }
         let half_angle = cone.half_angle() + tilt + ANGLE_SLACK;
@@ -241,19 +241,37 @@ mod tests {
         }
     }
 
-    /// At scales where squares overflow or vanish, whatever is not certain survives.
+    /// The axis is +Z and t is a thousandth; `viewpoint` and t are in units of 10^`exponent`.
+    fn may_hold_contour_at_scale(exponent: i32, half_angle: f64, viewpoint: DVec3) -> bool {
+        let scale = 10f64.powi(exponent);
+        let cone =
+            DoubleCone::from(bound(half_angle, DVec3::ZERO, 1e-3 * half_angle.cos() * scale));
+        cone.may_hold_contour(Viewpoint::at(scale * viewpoint))
+    }
+
+    /// Where f32 loses the squares of p before those of the height, the latter win.
     #[test]
-    fn squares_out_of_range_cull_nothing_wrong() {
+    fn nothing_is_culled_because_squares_overflow_or_vanish() {
+        for (exponent, half_angle) in (-44..=38).flat_map(|e| [(e, 1e-3f64), (e, 1.2)]) {
+            for x in 1..200 {
+                let across = 0.1 * f64::from(x) * DVec3::new(1.0, 1.0, 0.0);
+                // Below the cone by one part in a hundred.
+                let height = 1e-3 + 0.99 * half_angle.tan() * across.length();
+                for viewpoint in [across + height * DVec3::Z, across - height * DVec3::Z] {
+                    let may_hold = may_hold_contour_at_scale(exponent, half_angle, viewpoint);
+                    assert!(may_hold, "α {half_angle}, {viewpoint} · 1e{exponent}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn most_scales_are_culled() {
         for exponent in -44..=38 {
-            let scale = 10f64.powi(exponent);
-            let cone = DoubleCone::from(bound(1e-7, DVec3::ZERO, scale));
-            let at = |x, z| cone.may_hold_contour(Viewpoint::at(scale * DVec3::new(x, 0.0, z)));
-            // In the plane just above the apex, far outside the cone, though it opens by 89.99997°.
-            assert!(at(1e4, 1.0 + 1e-6) && at(1e4, -1.0 - 1e-6), "1e{exponent}");
-            assert!(at(1.0, 0.99) && at(0.0, 0.99), "1e{exponent}");
-            // Far above it, the patch is culled unless the numbers do not fit.
-            let is_in_range = (-15..=18).contains(&exponent);
-            assert_eq!(!at(1.0, 9.0) && !at(1.0, -9.0), is_in_range, "1e{exponent}");
+            let far_above = may_hold_contour_at_scale(exponent, 1e-3, DVec3::new(1.0, 0.0, 9.0));
+            let far_below = may_hold_contour_at_scale(exponent, 1e-3, DVec3::new(1.0, 0.0, -9.0));
+            let is_in_range = (-15..=19).contains(&exponent);
+            assert_eq!([!far_above, !far_below], [is_in_range; 2], "1e{exponent}");
         }
     }
 

@@ -40,13 +40,15 @@ impl SpatializedNormalCone {
         let to_viewpoint = viewpoint.from_point(self.sphere.center);
         let distance = to_viewpoint.length();
         let radius = viewpoint.w() * self.sphere.radius;
-        // cos α ≤ sin β: α + β reaches 90°. Written so that NaN survives.
-        if !(radius < cos * distance) {
+        // sin β < cos α, and not if anything is NaN.
+        let is_below_a_right_angle = radius < cos * distance;
+        if !is_below_a_right_angle {
             return true;
         }
         let tangent = ((distance - radius) * (distance + radius)).sqrt();
         let height = axis.dot(to_viewpoint).abs();
-        !(height > sin * tangent + cos * radius + ROUNDING * distance)
+        let is_culled = height > sin * tangent + cos * radius + ROUNDING * distance;
+        !is_culled
     }
 
     /// Probability that it survives, for viewpoints at `distance` from the center of the sphere in
@@ -59,7 +61,8 @@ impl SpatializedNormalCone {
 
 /// sin(α + asin(radius / distance)).
 pub(crate) fn acceptance(cone: &NormalCone, radius: f64, distance: f64) -> f64 {
-    if !(radius < cone.cos * distance) {
+    let is_below_a_right_angle = radius < cone.cos * distance;
+    if !is_below_a_right_angle {
         return 1.0;
     }
     let sin_beta = radius / distance;
