@@ -73,7 +73,8 @@ pub fn near(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
     let count = count.min(triangles.len());
     let mut viewpoints = Vec::new();
     for index in 0..count {
-        let corners: [Vec3; 3] = triangles[index * triangles.len() / count].map(|v| mesh.position(v));
+        let corners: [Vec3; 3] =
+            triangles[index * triangles.len() / count].map(|v| mesh.position(v));
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let heights = [-0.1, 0.0, 0.01, 0.1, 0.5, 1.0];

@@ -90,7 +90,10 @@ fn from_patch_file(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, St
     let mut contours = Vec::new();
     if args.method == Some(Method::BruteForce) {
         let statistics = extract_all_wings(&patches, viewpoint, &mut contours);
-        return Ok(Found { method: "brute-force", ..with_patches(&patches, statistics, &contours) });
+        return Ok(Found {
+            method: "brute-force",
+            ..with_patches(&patches, statistics, &contours)
+        });
     }
     let statistics = extract_patches(&patches, viewpoint, &mut contours);
     Ok(with_patches(&patches, statistics, &contours))

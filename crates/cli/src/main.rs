@@ -49,7 +49,8 @@ fn explain(error: &clap::Error) -> ExitCode {
             let text = error.to_string();
             let lines = text.lines().map(str::trim);
             let wanted = lines.filter(|l| !l.is_empty() && !l.starts_with("For more information"));
-            let line = wanted.take_while(|l| !l.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
+            let line =
+                wanted.take_while(|l| !l.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
             fail(line.strip_prefix("error: ").unwrap_or(&line))
         }
     }

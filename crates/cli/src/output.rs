@@ -75,9 +75,7 @@ impl Output {
                 .open(path)
                 .and_then(|mut stream| stream.write_all(bytes))
                 .map_err(|error| cannot_write(path, &error)),
-            Self::File(path) => {
-                replace(path, bytes).map_err(|error| cannot_write(path, &error))
-            }
+            Self::File(path) => replace(path, bytes).map_err(|error| cannot_write(path, &error)),
         }
     }
 }

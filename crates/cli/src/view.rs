@@ -13,22 +13,25 @@ const NEARLY_VERTICAL: f64 = 1e-6;
 pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
     let [width, height] = args.size.map(f64::from);
     let page = Page { width, height, margin: args.margin };
-    build(args, mesh, page).map_err(|error| {
-        let option = match error {
-            CameraError::EyeAtTarget { .. } => "--eye",
-            CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
-            CameraError::FieldOfView { .. } => "--fov",
-            CameraError::Height { .. } => "--height",
-            CameraError::Page { .. } => "--size",
-            CameraError::Margin { .. } => "--margin",
-            CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
-        };
-        format!("{option}: {error}")
-    })
-    .and_then(|camera| match args.distance {
-        Some(distance) if distance <= 0.0 => Err(format!("--distance: {distance} is not above 0")),
-        _ => Ok(camera),
-    })
+    build(args, mesh, page)
+        .map_err(|error| {
+            let option = match error {
+                CameraError::EyeAtTarget { .. } => "--eye",
+                CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
+                CameraError::FieldOfView { .. } => "--fov",
+                CameraError::Height { .. } => "--height",
+                CameraError::Page { .. } => "--size",
+                CameraError::Margin { .. } => "--margin",
+                CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
+            };
+            format!("{option}: {error}")
+        })
+        .and_then(|camera| match args.distance {
+            Some(distance) if distance <= 0.0 => {
+                Err(format!("--distance: {distance} is not above 0"))
+            }
+            _ => Ok(camera),
+        })
 }
 
 fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError> {

@@ -81,8 +81,14 @@ fn extract_prints_the_contract() {
     let found = bench.json("extract corner.obj --eye 9,9,9 --json");
     let keys: Vec<_> = found.as_object().unwrap().keys().map(String::as_str).collect();
     let mut expected = vec![
-        "method", "edges", "patches", "patches_tested", "patches_accepted", "edges_tested",
-        "contour_edges", "contour",
+        "method",
+        "edges",
+        "patches",
+        "patches_tested",
+        "patches_accepted",
+        "edges_tested",
+        "contour_edges",
+        "contour",
     ];
     expected.sort_unstable();
     let mut sorted = keys;
@@ -145,13 +151,24 @@ fn info_counts() {
     bench.write("corner.obj", CORNER);
     let report = bench.json("info corner.obj --json --vertices");
     for (key, count) in [
-        ("faces", 4), ("vertices", 4), ("welded_vertices", 4), ("interior", 6), ("boundary", 0),
-        ("non_manifold", 0), ("inconsistent", 0), ("degenerate", 0), ("convex", 6), ("flat", 0),
+        ("faces", 4),
+        ("vertices", 4),
+        ("welded_vertices", 4),
+        ("interior", 6),
+        ("boundary", 0),
+        ("non_manifold", 0),
+        ("inconsistent", 0),
+        ("degenerate", 0),
+        ("convex", 6),
+        ("flat", 0),
         ("concave", 0),
     ] {
         assert_eq!(report[key], count, "{key}");
     }
-    assert_eq!(report["bounds"], serde_json::json!({"min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0]}));
+    assert_eq!(
+        report["bounds"],
+        serde_json::json!({"min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0]})
+    );
     assert_eq!(report["positions"][3], serde_json::json!([0.0, 0.0, 1.0]));
     assert_eq!(report["parts"].as_array().unwrap().len(), 1);
     assert!(bench.succeed("info corner.obj").contains("convex"));
@@ -171,7 +188,8 @@ fn draw_alone_draws_a_shape() {
 fn draw_writes_svg_png_and_statistics() {
     let bench = Bench::new();
     bench.write("corner.obj", CORNER);
-    let drawn = bench.json("draw corner.obj -o a.svg --json --lines contour,crease --hidden dashed");
+    let drawn =
+        bench.json("draw corner.obj -o a.svg --json --lines contour,crease --hidden dashed");
     assert!(drawn["contour"]["visible_length"].as_f64().unwrap() > 100.0);
     bench.succeed("draw corner.obj -o a.png --size 120x80");
     let files = bench.files();

@@ -86,7 +86,12 @@ fn run(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
-fn validate(name: &str, mesh: &Mesh, options: &Options, total: &mut Agreement) -> Result<(), String> {
+fn validate(
+    name: &str,
+    mesh: &Mesh,
+    options: &Options,
+    total: &mut Agreement,
+) -> Result<(), String> {
     let adjacency = MeshAdjacency::new(mesh);
     let viewpoints: Vec<_> = viewpoints::protocol(mesh)
         .into_iter()
@@ -96,8 +101,7 @@ fn validate(name: &str, mesh: &Mesh, options: &Options, total: &mut Agreement) -
         .collect();
     for (filter, filter_name) in [(EdgeFilter::Convex, "convex"), (EdgeFilter::All, "all")] {
         let start = Instant::now();
-        let params =
-            FusionParams { max_partition: Some(options.partition), ..FusionParams::PAPER };
+        let params = FusionParams { max_partition: Some(options.partition), ..FusionParams::PAPER };
         let patches = fuse(mesh, &adjacency, filter, &params, &|_| ControlFlow::Continue(()))
             .map_err(|error| format!("{name}: {error}"))?;
         patches.validate().map_err(|error| format!("{name}: {error}"))?;
@@ -123,7 +127,8 @@ fn validate(name: &str, mesh: &Mesh, options: &Options, total: &mut Agreement) -
 /// Mesh, viewpoint and edges: what is needed to see the disagreement again.
 fn explain(name: &str, filter: &str, adjacency: &MeshAdjacency, wrong: &Disagreement) -> String {
     let pairs = |edges: &[drypoint_mesh::EdgeId]| {
-        let ends = edges.iter().take(20).map(|&e| format!("{}:{:?}", e.0, adjacency.wing(e).ends()));
+        let ends =
+            edges.iter().take(20).map(|&e| format!("{}:{:?}", e.0, adjacency.wing(e).ends()));
         ends.collect::<Vec<_>>().join(" ")
     };
     let kind = if wrong.viewpoint.is_point() { "eye" } else { "direction" };
