@@ -182,7 +182,7 @@ mod tests {
         check_page("![a](picture.svg)", true);
         check_page("[a]\n\n[a]: none.md", true);
         check_page("| a |\n|---|\n| [a](words.md) |", false);
-        check_page("[a](../../outside.md)", true);
+        check_page("[a](../../README.md)", true);
         check_page("[a](/docs/words.md)", true);
         check_page("`[a](none.md)`", false);
     }
