@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use glam::Vec3;
 
+use crate::facing::are_opposite;
 use crate::{Mesh, Wing, volume_side};
 
 /// What an edge is, whatever the viewpoint.
@@ -49,12 +50,10 @@ pub(crate) fn interior_class(mesh: &Mesh, wing: &Wing) -> EdgeClass {
 }
 
 /// Whether the faces of a flat wing lie upon each other rather than side by side: a convex or a
-/// concave edge of dihedral angle ±π, which is a contour from everywhere outside its plane.
+/// concave edge of dihedral angle ±π, which is a contour from everywhere outside its plane. True
+/// beside a face without area. Exact.
 pub(crate) fn is_fold(mesh: &Mesh, wing: &Wing) -> bool {
-    let corners = [wing.left_face(), wing.right_face()].map(|face| face.map(|v| mesh.position(v)));
-    let [left, right] = corners.map(area_vector);
-    // The normals are parallel, so the sign is safe from rounding.
-    left.dot(right) <= 0.0
+    are_opposite([wing.left_face(), wing.right_face()].map(|f| f.map(|v| mesh.position(v))))
 }
 
 /// Dihedral angle of a wing in radians: 0 when flat, positive when convex, in −π ..= π; the angle

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec3, Vec3};
 use num_rational::BigRational;
-use robust::Coord3D;
+use robust::{Coord, Coord3D};
 
 use crate::{Mesh, Viewpoint};
 
@@ -48,14 +48,23 @@ pub fn face_sides(mesh: &Mesh, viewpoint: Viewpoint, sides: &mut Vec<Ordering>) 
 
 /// Whether the corners span a plane: exactly, `false` if and only if they are collinear.
 pub fn has_area(corners: [Vec3; 3]) -> bool {
-    use robust::{Coord, orient2d};
-    // The components of (b − a) × (c − a) are the areas of the three axis-aligned shadows.
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
-    let shadow = |x: usize, y: usize| {
-        let at = |p: DVec3| Coord { x: p[x], y: p[y] };
-        orient2d(at(a), at(b), at(c))
-    };
-    shadow(0, 1) != 0.0 || shadow(1, 2) != 0.0 || shadow(2, 0) != 0.0
+    PLANES.iter().any(|&plane| shadow(corners, plane) != 0.0)
+}
+
+/// Whether two triangles in one plane, exactly, have opposite normals, or one of them no area.
+pub(crate) fn are_opposite([left, right]: [[Vec3; 3]; 2]) -> bool {
+    // The normals are parallel, so any component of theirs that is not 0 will tell.
+    PLANES.iter().all(|&plane| shadow(left, plane) * shadow(right, plane) <= 0.0)
+}
+
+/// The planes of the coordinates, by their axes.
+const PLANES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+/// Twice the area of a triangle's shadow on one of [`PLANES`], a component of its normal. Positive
+/// if it runs counter-clockwise, negative if clockwise, 0 if collinear, exactly; rounded otherwise.
+fn shadow(corners: [Vec3; 3], [x, y]: [usize; 2]) -> f64 {
+    let [a, b, c] = corners.map(|p| Coord { x: f64::from(p[x]), y: f64::from(p[y]) });
+    robust::orient2d(a, b, c)
 }
 
 /// `Greater` if a, b and c run counter-clockwise seen from d.
