@@ -107,11 +107,7 @@ impl MeshAdjacency {
             let drawable = match class {
                 EdgeClass::Boundary | EdgeClass::Concave => false,
                 EdgeClass::Convex | EdgeClass::NonManifold | EdgeClass::Inconsistent => true,
-                EdgeClass::Flat => {
-                    without_area[left.triangle() as usize]
-                        || without_area[right.triangle() as usize]
-                        || is_fold(mesh, &wing)
-                }
+                EdgeClass::Flat => is_fold(mesh, &wing),
             };
             adjacency.report.count(class, side.first_of_edge);
             adjacency.wings.push(wing);

@@ -62,3 +62,80 @@ pub fn contour_vertex_pairs(
 fn is_front(side: Ordering) -> bool {
     side != Ordering::Less
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::shapes;
+
+    /// The expected numbers of contour edges can be seen by hand.
+    #[track_caller]
+    fn check(mesh: &Mesh, viewpoint: Viewpoint, filter: EdgeFilter, expected: usize) {
+        let adjacency = MeshAdjacency::new(mesh);
+        let mut contours = Vec::new();
+        contour_edges(mesh, &adjacency, viewpoint, filter, &mut contours);
+        assert_eq!(contours.len(), expected, "{contours:?}");
+    }
+
+    #[track_caller]
+    fn check_point(mesh: &Mesh, xyz: [f64; 3], expected: usize) {
+        check(mesh, Viewpoint::at(DVec3::from_array(xyz)), EdgeFilter::All, expected);
+    }
+
+    #[track_caller]
+    fn check_direction(mesh: &Mesh, xyz: [f64; 3], expected: usize) {
+        check(mesh, Viewpoint::from_direction(DVec3::from_array(xyz)), EdgeFilter::All, expected);
+    }
+
+    #[test]
+    fn a_cube_shows_the_outline_of_the_sides_it_turns_to_us() {
+        let cube = shapes::cube();
+        check_point(&cube, [0.0, 0.0, 9.0], 4); // One side.
+        check_point(&cube, [0.0, 9.0, 9.0], 6); // Two sides.
+        check_point(&cube, [9.0, 9.0, 9.0], 6); // Three sides.
+        check_point(&cube, [0.5, 0.0, 0.0], 0); // Inside: every face looks away.
+        // In a plane of a side: that side is front too, by the tie rule.
+        check_point(&cube, [0.0, 1.0, 9.0], 6);
+        check_point(&cube, [0.0, 1.0, 0.0], 4);
+        check_point(&cube, [1.0, 1.0, 1.0], 6);
+    }
+
+    #[test]
+    fn from_infinity_sides_seen_edge_on_are_front() {
+        let cube = shapes::cube();
+        check_direction(&cube, [3.0, 2.0, 1.0], 6);
+        check_direction(&cube, [0.0, 0.0, 1e-9], 4); // All but the side that looks away.
+        check_direction(&cube, [0.0, 0.0, 0.0], 0); // Nothing looks away.
+    }
+
+    #[test]
+    fn a_boundary_is_no_contour() {
+        for z in [-1.0, 0.0, 1.0] {
+            check_point(&shapes::one_triangle(), [0.3, 0.3, z], 0);
+        }
+        check_point(&shapes::empty(), [0.0, 0.0, 1.0], 0);
+    }
+
+    #[test]
+    fn a_fold_is_a_contour_from_outside_its_plane() {
+        check_point(&shapes::folded_sheet(), [0.5, 0.5, -2.0], 3);
+        check_point(&shapes::folded_sheet(), [0.5, 0.5, 0.0], 0);
+        let outside = Viewpoint::at(DVec3::new(0.5, 0.5, -2.0));
+        check(&shapes::folded_sheet(), outside, EdgeFilter::Convex, 3);
+    }
+
+    #[test]
+    fn wings_of_one_edge_are_one_pair() {
+        let cubes = shapes::cubes_sharing_an_edge();
+        let adjacency = MeshAdjacency::new(&cubes);
+        let viewpoint = Viewpoint::at(DVec3::new(5.0, -4.0, 0.5));
+        let (mut contours, mut pairs) = (Vec::new(), Vec::new());
+        contour_edges(&cubes, &adjacency, viewpoint, EdgeFilter::All, &mut contours);
+        contour_vertex_pairs(&adjacency, &contours, &mut pairs);
+        // Two sides of each cube have an outline of six edges. The one they share has six wings, of
+        // which two join a front and a back face across the outline.
+        assert_eq!((contours.len(), pairs.len()), (12, 11));
+    }
+}
