@@ -26,7 +26,8 @@
 //! ```
 //!
 //! Growing t by 8 u t / cos α pays for the first term. Growing α by 8 u makes the cone wider by
-//! 8 u |p| / cos² α there, which pays for the second at any α below 90°. Multiplications and
+//! 8 u |p| / cos² α there, which pays for the second at any α below 90°. Rounding the center moves
+//! it by √3 u times its largest coordinate at most, for which t grows by 8 u of that, over cos α. Multiplications and
 //! additions may be fused or taken in any order: that only takes roundings away.
 
 use bytemuck::{Pod, Zeroable};
@@ -36,13 +37,10 @@ use glam::{DVec3, Vec3};
 use crate::spatialized::acceptance;
 use crate::{NormalCone, SpatializedNormalCone};
 
-/// What α is grown by, in radians, to pay for f32: 8 units of 2⁻²⁴, of which 5 are needed (see the
-/// head of this file).
-pub const ANGLE_SLACK: f64 = 8.0 / (1u32 << 24) as f64;
-
-/// What t is grown by, as a share of itself and of the size of the coordinates of the center, whose
-/// roundings are larger than the patch if that is far from the origin.
-pub const LENGTH_SLACK: f64 = 8.0 / (1u32 << 24) as f64;
+/// What pays for f32, 8 units of 2⁻²⁴: the half-angle α grows by that many radians, and t by that
+/// share of itself and of the size of the center's coordinates, whose own rounding is larger than
+/// the patch if it is far from the origin. Over cos α, as t is radius over cos α.
+pub const SLACK: f64 = 8.0 / (1u32 << 24) as f64;
 
 /// The largest half-angle α that is culled at all, in radians: 80°. Wider cones are seldom culled,
 /// and the tangent grows beyond what the slack was made for.
@@ -123,24 +121,21 @@ impl DoubleCone {
     }
 }
 
-/// Rounds outward, so that whatever `bound` keeps, in f64, is kept in f32: what rounding moved the
-/// axis and the center by is measured, and [`ANGLE_SLACK`] and [`LENGTH_SLACK`] pay for the
-/// arithmetic at run time. [`DoubleCone::ALWAYS`] if α is above [`MAX_HALF_ANGLE`], or a number is
+/// Rounds outward, so that whatever `bound` keeps, in f64, is kept in f32. What rounding turned the
+/// axis by is measured; [`SLACK`] pays for the rest, and for the arithmetic at run time. [`DoubleCone::ALWAYS`] if α is above [`MAX_HALF_ANGLE`], or a number is
 /// NaN or does not fit.
 impl From<SpatializedNormalCone> for DoubleCone {
     fn from(bound: SpatializedNormalCone) -> Self {
         let SpatializedNormalCone { cone, sphere } = bound;
         let (axis, center) = (cone.axis.as_vec3(), sphere.center.as_vec3());
         let tilt = axis.as_dvec3().cross(cone.axis).length();
-        let shift = center.as_dvec3().distance(sphere.center);
         if cone.half_angle() > MAX_HALF_ANGLE || !is_unit(axis) {
             return Self::ALWAYS;
         }
-        let half_angle = cone.half_angle() + tilt + ANGLE_SLACK;
-        let radius = sphere.radius + shift;
-        let apex_distance = radius / half_angle.cos();
+        let half_angle = cone.half_angle() + tilt + SLACK;
+        let apex_distance = sphere.radius / half_angle.cos();
         let scale = f64::from(center.abs().max_element());
-        let growth = LENGTH_SLACK * (apex_distance + scale) / half_angle.cos();
+        let growth = SLACK * (apex_distance + scale) / half_angle.cos();
         let bound = Self {
             center,
             apex_distance: round_up(apex_distance + growth),

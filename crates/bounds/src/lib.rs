@@ -57,6 +57,6 @@ mod spatialized;
 mod sphere;
 
 pub use cone::NormalCone;
-pub use double_cone::{ANGLE_SLACK, DoubleCone, LENGTH_SLACK, MAX_HALF_ANGLE, MIN_CLEARANCE};
+pub use double_cone::{DoubleCone, MAX_HALF_ANGLE, MIN_CLEARANCE, SLACK};
 pub use spatialized::SpatializedNormalCone;
 pub use sphere::Sphere;
