@@ -24,8 +24,8 @@ pub(crate) fn hand_to(command: &mut Command) -> Result<(), String> {
             command.env(VARIABLE, folder);
         }
         None => println!(
-            "{VARIABLE} is not set: tests on real meshes are skipped. To run them too: \
-             {VARIABLE}=FOLDER cargo xtask test, with a folder of .{} files",
+            "{VARIABLE} is not set: real meshes are skipped. To include them, set it to a folder of \
+             .{} files",
             EXTENSIONS.join(", .")
         ),
     }
