@@ -2,6 +2,7 @@
 
 use drypoint_mesh::Mesh;
 
+use crate::specks::specks;
 use crate::trace::{self, IsHidden};
 use crate::{Camera, Chain, Color, LineClass, Page, Run, Segments, VisibilityParams, chain};
 
@@ -39,7 +40,11 @@ impl Layer {
     }
 
     fn length(&self, visible: bool) -> f64 {
-        self.runs.iter().filter(|run| run.visible == visible).map(Run::length).sum()
+        // From 0.0, because the sum of nothing is -0.
+        self.runs
+            .iter()
+            .filter(|run| run.visible == visible)
+            .fold(0.0, |sum, run| sum + run.length())
     }
 }
 
@@ -74,13 +79,18 @@ impl Drawing {
         params: &VisibilityParams,
         is_hidden: &mut IsHidden<'_>,
     ) -> Self {
-        let layers = LineClass::ALL.map(|class| {
+        let mut layers = LineClass::ALL.map(|class| {
             let segments = segments.of(class);
             let chains = chain(mesh, segments);
             let mut runs_of = |chain: &Chain| trace::runs(mesh, chain, camera, params, is_hidden);
             let runs = chains.iter().flat_map(&mut runs_of).collect();
             Layer { class, chains: chains.len(), segments: segments.len(), runs }
         });
+        let runs: Vec<&Run> = layers.iter().flat_map(|layer| &layer.runs).collect();
+        let mut is_speck = specks(&runs, params.drop_specks).into_iter();
+        for layer in &mut layers {
+            layer.runs.retain(|_| !is_speck.next().unwrap_or(false));
+        }
         Self { page: camera.page(), layers: layers.into() }
     }
 

@@ -9,6 +9,7 @@ mod occluders;
 #[cfg(feature = "png")]
 mod png;
 mod segments;
+mod specks;
 #[cfg(feature = "svg")]
 mod svg;
 mod trace;

@@ -64,7 +64,7 @@ impl std::fmt::Debug for Occluders<'_> {
 }
 
 impl<'a> Occluders<'a> {
-    /// Builds the hierarchy, single-threaded: about 0.4 µs and 150 bytes a triangle.
+    /// Builds the hierarchy, single-threaded: about 0.3 µs and 120 bytes a triangle.
     pub fn new(mesh: &'a Mesh, adjacency: &'a MeshAdjacency) -> Self {
         let representatives = adjacency.representatives();
         let solid: Vec<u32> = (0u32..)
@@ -76,8 +76,9 @@ impl<'a> Occluders<'a> {
         let largest = bounds.map_or(0.0, |b| b.min.abs().max(b.max.abs()).max_element());
         let scale = power_of_two_near(1.0 / f64::from(largest));
         let boxes: Vec<Aabb> = solid.iter().map(|&t| box_around(mesh, t, scale)).collect();
+        // Rays are few: better hierarchies cost the dragon 0.2 s more and save nothing.
         let mut unread = Duration::ZERO;
-        let bvh = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut unread);
+        let bvh = build_bvh2(&boxes, BvhBuildParams::fastest_build(), &mut unread);
         let triangles = bvh
             .primitive_indices
             .iter()

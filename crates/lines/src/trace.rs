@@ -18,13 +18,14 @@ pub struct VisibilityParams {
     /// Shorter hidden stretches between visible ones of one chain are drawn, 0 or more. They are
     /// the width of a hair, where a contour passes behind a fold of its own surface.
     pub close_gaps: f64,
-    /// Shorter visible stretches between hidden ones of one chain are not drawn, 0 or more.
+    /// Visible runs shorter than this, alone or in sum with those they touch, are not drawn unless
+    /// they touch a longer one; 0 or more. They are true contours of the noise of scanned surfaces.
     pub drop_specks: f64,
 }
 
 impl Default for VisibilityParams {
     fn default() -> Self {
-        Self { step: 1.0, precision: 0.02, close_gaps: 0.75, drop_specks: 1.0 }
+        Self { step: 1.0, precision: 0.02, close_gaps: 0.75, drop_specks: 6.0 }
     }
 }
 
@@ -97,7 +98,7 @@ pub(crate) fn runs(
     let mut runs = Vec::new();
     let starts = |span: &Span| span.from == 0.0 && !pieces[span.piece].joined;
     for strand in spans.chunk_by(|_, next| !starts(next)) {
-        let stretches = clean(stretches(&pieces, strand), is_ring, params);
+        let stretches = close_gaps(stretches(&pieces, strand), is_ring, params.close_gaps);
         let closed = is_ring && stretches.len() == 1;
         runs.extend(stretches.iter().filter_map(|stretch| run(&pieces, stretch, closed)));
     }
@@ -192,35 +193,30 @@ fn stretches(pieces: &[Piece], spans: &[Span]) -> Vec<Stretch> {
     spans.chunk_by(|a, b| a.visible == b.visible).map(group).collect()
 }
 
-/// Closes gaps, then drops specks. The last stretch of a ring is followed by the first.
-fn clean(mut stretches: Vec<Stretch>, is_ring: bool, params: &VisibilityParams) -> Vec<Stretch> {
-    for (visible, limit) in [(false, params.close_gaps), (true, params.drop_specks)] {
-        let count = stretches.len();
-        // Neighbours differ, so whatever has one on either side lies between its opposites.
-        let is_between = |i: usize| if is_ring { count > 1 } else { 0 < i && i + 1 < count };
-        for (i, stretch) in stretches.iter_mut().enumerate() {
-            if stretch.visible == visible && stretch.length < limit && is_between(i) {
-                stretch.visible = !visible;
-            }
-        }
-        let mut merged: Vec<Stretch> = Vec::with_capacity(count);
-        for stretch in stretches {
-            match merged.last_mut() {
-                Some(last) if last.visible == stretch.visible => last.append(stretch),
-                _ => merged.push(stretch),
-            }
-        }
-        stretches = merged;
-        if is_ring
-            && stretches.len() > 1
-            && stretches[0].visible == stretches[stretches.len() - 1].visible
-            && let Some(mut last) = stretches.pop()
-        {
-            std::mem::swap(&mut last, &mut stretches[0]);
-            stretches[0].append(last);
+/// Closes gaps. The last stretch of a ring is followed by the first.
+fn close_gaps(mut stretches: Vec<Stretch>, is_ring: bool, limit: f64) -> Vec<Stretch> {
+    let count = stretches.len();
+    // Neighbours differ, so whatever has one on either side lies between its opposites.
+    let is_between = |i: usize| if is_ring { count > 1 } else { 0 < i && i + 1 < count };
+    for (i, stretch) in stretches.iter_mut().enumerate() {
+        stretch.visible |= stretch.length < limit && is_between(i);
+    }
+    let mut merged: Vec<Stretch> = Vec::with_capacity(count);
+    for stretch in stretches {
+        match merged.last_mut() {
+            Some(last) if last.visible == stretch.visible => last.append(stretch),
+            _ => merged.push(stretch),
         }
     }
-    stretches
+    if is_ring
+        && merged.len() > 1
+        && merged[0].visible == merged[merged.len() - 1].visible
+        && let Some(mut last) = merged.pop()
+    {
+        std::mem::swap(&mut last, &mut merged[0]);
+        merged[0].append(last);
+    }
+    merged
 }
 
 impl Stretch {
