@@ -16,7 +16,7 @@ pub fn icosphere(triangles: usize) -> Mesh {
     build(sphere.directions().map(|d| d.as_vec3()).collect(), sphere.triangles())
 }
 
-/// An [`icosphere`] with hills and valleys of up to a third of its radius: four octaves of smooth
+/// An [`icosphere`] with hills and valleys of up to a third of its radius: three octaves of smooth
 /// noise along the radius. Closed, without self-intersection, with convex and concave edges.
 ///
 /// The noise is the same for every count, so a larger count is the same ball in more detail.
@@ -155,9 +155,9 @@ impl Icosphere {
     }
 }
 
-/// Smooth noise within −1 ..= 1, of four octaves.
+/// Smooth noise within −1 ..= 1, of three octaves.
 fn octaves(p: DVec3) -> f64 {
-    [(2.0, 0.5), (4.0, 0.25), (8.0, 0.15), (16.0, 0.1)]
+    [(2.0, 0.6), (4.0, 0.28), (8.0, 0.12)]
         .into_iter()
         .map(|(frequency, amplitude)| amplitude * noise(frequency * p))
         .sum()
