@@ -8,6 +8,7 @@ mod bench;
 mod ci;
 mod manifest;
 mod models;
+mod mutants;
 mod shell;
 mod test;
 mod tidy;
@@ -21,7 +22,8 @@ Usage: cargo xtask <COMMAND>
   test [-- ARGS]       check the machine, then run every test; ARGS go to cargo test
   tidy                 check lengths, layers in Cargo.toml, links and the other rules of CONTRIBUTING.md
   validate [ARGS]      compare every extractor with the definition on every shape and model
-  validate --mutants   break the bounds on purpose and see the tests notice
+  validate --mutants   break the bounds on purpose and compare who notices with docs/mutants.md;
+                       with --bless: write that page
   bench [ARGS]         time every extractor
   ci                   what CI runs, in the same order
 
