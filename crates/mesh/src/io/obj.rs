@@ -99,7 +99,7 @@ impl Reader {
     fn corner(&mut self, word: &[u8], line: u64) -> Result<u32, Fault> {
         let end = word.iter().position(|&byte| byte == b'/').unwrap_or(word.len());
         let not_an_index = || Fault::NotAnIndex { text: lossy(word) };
-        let vertex: i64 = text::parse(&word[..end]).ok_or_else(not_an_index)?;
+        let vertex: i64 = text::integer(&word[..end]).ok_or_else(not_an_index)?;
         let seen = self.positions.len() as u64;
         let index = match vertex {
             0 => return Err(Fault::ZeroIndex),

@@ -74,6 +74,16 @@ pub(super) fn position<'a>(words: impl Iterator<Item = &'a [u8]>) -> Result<[f32
     if found < 3 { Err(Fault::TooFewNumbers { found, expected: 3 }) } else { Ok(position) }
 }
 
+/// A whole number; `None` if this is none.
+pub(super) fn integer(word: &[u8]) -> Option<i64> {
+    // So many digits cannot overflow. Most words of most files are such numbers, and the general
+    // way looks at each digit three times.
+    if (1..=18).contains(&word.len()) && word.iter().all(u8::is_ascii_digit) {
+        return Some(word.iter().fold(0, |sum, digit| 10 * sum + i64::from(digit - b'0')));
+    }
+    parse(word)
+}
+
 /// Whatever can be parsed from text; `None` if this is not.
 pub(super) fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()

@@ -19,9 +19,9 @@ impl<'a> Ascii<'a> {
     }
 
     fn next(&mut self) -> Result<&'a [u8], Fault> {
-        let missing = Fault::TooFewNumbers { found: self.found, expected: self.found + 1 };
+        let found = self.found;
         self.found += 1;
-        self.words.next().ok_or(missing)
+        self.words.next().ok_or_else(|| Fault::TooFewNumbers { found, expected: found + 1 })
     }
 }
 
@@ -43,7 +43,7 @@ impl Values for Ascii<'_> {
 
     fn integer(&mut self, _: Scalar) -> Result<i64, Fault> {
         let word = self.next()?;
-        text::parse(word).ok_or_else(|| Fault::NotAnIndex { text: lossy(word) })
+        text::integer(word).ok_or_else(|| Fault::NotAnIndex { text: lossy(word) })
     }
 
     fn skip(&mut self, _: Scalar, count: u64) -> Result<(), Fault> {
