@@ -22,7 +22,11 @@ pub fn files() -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     for entry in entries {
         let path = entry.map_err(|error| fail(error.to_string()))?.path();
-        if path.extension().and_then(OsStr::to_str).is_some_and(io::is_supported_extension) {
+        if path
+            .extension()
+            .and_then(OsStr::to_str)
+            .is_some_and(|e| io::Format::of_extension(e).is_some())
+        {
             files.push(path);
         }
     }

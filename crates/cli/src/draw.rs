@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use drypoint_lines::{
-    Camera, Color, Drawing, HiddenLines, Layer, LineClass, LineOptions, Occluders, Segments, Style,
+    Camera, Color, Drawing, HiddenLines, Layer, LineOptions, Occluders, Segments, Style,
     VisibilityParams, to_png, to_svg,
 };
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, contour_edges};

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use drypoint_fusion::{FusionParams, PatchSet, fuse};
+use drypoint_fusion::{FusionParams, PatchSet, Progress, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency};
 use serde::Serialize;
 
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
         patches: patches.patches().len(),
         mean_half_angle: summary.mean_half_angle.to_degrees(),
         max_half_angle: summary.max_half_angle.to_degrees(),
-        mean_t: summary.mean_reach,
+        mean_t: summary.mean_apex_distance,
         expected_cost: patches.expected_cost(),
         build_seconds,
         peak_memory: peak_memory(),
@@ -73,8 +73,8 @@ pub(crate) fn build(
 ) -> Result<PatchSet, String> {
     let params = FusionParams {
         sphere: match args.sphere {
-            SphereKind::Mean => drypoint_bounds::SphereKind::Mean,
-            SphereKind::Reduced => drypoint_bounds::SphereKind::Reduced,
+            SphereKind::Mean => drypoint_fusion::SphereKind::Mean,
+            SphereKind::Reduced => drypoint_fusion::SphereKind::Reduced,
         },
         max_partition: args.partition.0,
         ..FusionParams::PAPER

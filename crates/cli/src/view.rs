@@ -11,7 +11,7 @@ const NEARLY_VERTICAL: f64 = 1e-6;
 
 /// The camera that the options ask for.
 pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
-    let [width, height] = args.size.map(f64::from);
+    let [width, height] = args.size;
     let page = Page { width, height, margin: args.margin };
     build(args, mesh, page)
         .map_err(|error| {
@@ -45,7 +45,8 @@ fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError
     };
     if args.ortho {
         let fitted = Camera::fit_orthographic(points(), towards_viewer, up, page)?;
-        let height = args.height.unwrap_or_else(|| fitted.pixel_size(target) * page.height);
+        let height =
+            args.height.unwrap_or_else(|| fitted.pixel_size(target) * f64::from(page.height));
         return match (args.target, args.height) {
             (None, None) => Ok(fitted),
             _ => Camera::orthographic(towards_viewer, target, up, height, page),

@@ -149,7 +149,7 @@ fn extract(
 
 /// One drawing as `drypoint draw` makes it, stage by stage.
 fn draw(mesh: &Mesh, adjacency: &MeshAdjacency) -> Result<(), String> {
-    let page = Page { width: 1000.0, height: 1000.0, margin: 40.0 };
+    let page = Page { width: 1000, height: 1000, margin: 40.0 };
     let points = mesh.positions().iter().map(|p| p.as_dvec3());
     let camera = Camera::fit_perspective(points, DVec3::ONE, None, 30.0, page)
         .map_err(|error| error.to_string())?;
