@@ -3,48 +3,35 @@
 use drypoint_mesh::Viewpoint;
 use glam::{DVec2, DVec3};
 
+use crate::{CameraError, Page};
+
 /// Largest size of a coordinate that [`Viewpoint`] is exact for.
 const MAX_COORDINATE: f64 = 1e60;
 
 /// Below this sine two directions are taken as parallel.
 const PARALLEL: f64 = 1e-9;
 
-/// Most pixels of a side of the [`Page`].
-const MAX_SIDE: u32 = 65_535;
-
-/// The paper, in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Page {
-    /// 1 to 65,535.
-    pub width: u32,
-    /// 1 to 65,535.
-    pub height: u32,
-    /// Kept free at each side when a view is fitted to a mesh; lines are clipped at the border of
-    /// the page, not at the margin. At least 0 and below half the shorter side.
-    pub margin: f64,
-}
-
 /// A viewpoint, a lens and a [`Page`]. All in f64: nothing is rounded before a point is on paper.
 ///
 /// On the page x runs to the right and y **down**, in pixels, from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    viewpoint: Viewpoint,
+    pub(crate) viewpoint: Viewpoint,
     /// Lands in the middle of the page in an orthographic view; the eye in a perspective one.
-    origin: DVec3,
-    frame: Frame,
+    pub(crate) origin: DVec3,
+    pub(crate) frame: Frame,
     /// Pixels a model unit takes, at depth 1 if in perspective.
-    scale: f64,
-    page: Page,
+    pub(crate) scale: f64,
+    pub(crate) page: Page,
 }
 
 /// Directions of the view, of length 1 and at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Frame {
-    right: DVec3,
-    up: DVec3,
+pub(crate) struct Frame {
+    pub(crate) right: DVec3,
+    pub(crate) up: DVec3,
     /// From the scene towards the viewer.
-    back: DVec3,
+    pub(crate) back: DVec3,
 }
 
 /// What of a segment is on the page.
@@ -126,68 +113,6 @@ impl Camera {
         Ok(Self { viewpoint, origin: target, frame, scale, page })
     }
 
-    /// The nearest perspective view from the direction `towards_viewer` in which all `points` are
-    /// within the page's margin. Exact and linear: the four sides of the view pyramid each touch a
-    /// point, or two opposite ones do and the points are in the middle between the others.
-    ///
-    /// Without points it looks at the origin from a distance of 1.
-    ///
-    /// # Errors
-    /// The first of [`CameraError`] that applies.
-    pub fn fit_perspective(
-        points: impl IntoIterator<Item = DVec3>,
-        towards_viewer: DVec3,
-        up: Option<DVec3>,
-        vertical_fov: f64,
-        page: Page,
-    ) -> Result<Self, CameraError> {
-        let frame = Frame::new(towards_viewer, up)?;
-        let scale = focal_length(vertical_fov, page)?;
-        let [tan_x, tan_y] = page.half_inside().map(|half| half / scale);
-        // A point is inside if |x − eye x| ≤ tan (eye z − z), z towards the viewer. Each side of
-        // the page so asks for a least value of tan · eye z ± eye x.
-        let sides = [
-            frame.right + tan_x * frame.back,
-            -frame.right + tan_x * frame.back,
-            frame.up + tan_y * frame.back,
-            -frame.up + tan_y * frame.back,
-            frame.back,
-        ];
-        let Extent { most: [right, left, top, bottom, front], center, radius } =
-            Extent::new(points, sides);
-        // Points in one place, or in a line with the eye, must not end up on the eye.
-        let away = if radius > 0.0 { 1e-3 * radius } else { 1.0 };
-        let distance =
-            (0.5 * (right + left) / tan_x).max(0.5 * (top + bottom) / tan_y).max(front + away);
-        let offset = 0.5 * (right - left) * frame.right + 0.5 * (top - bottom) * frame.up;
-        let eye = center + offset + distance * frame.back;
-        check_point("the eye", eye)?;
-        Ok(Self { viewpoint: Viewpoint::at(eye), origin: eye, frame, scale, page })
-    }
-
-    /// The orthographic view from the direction `towards_viewer` in which all `points` just fill
-    /// the page within its margin. Without points, or if all are in one line with the viewer, the
-    /// page is 1 unit high.
-    ///
-    /// # Errors
-    /// The first of [`CameraError`] that applies.
-    pub fn fit_orthographic(
-        points: impl IntoIterator<Item = DVec3>,
-        towards_viewer: DVec3,
-        up: Option<DVec3>,
-        page: Page,
-    ) -> Result<Self, CameraError> {
-        page.check()?;
-        let frame = Frame::new(towards_viewer, up)?;
-        let sides = [frame.right, -frame.right, frame.up, -frame.up];
-        let Extent { most: [right, left, top, bottom], center, .. } = Extent::new(points, sides);
-        let [half_width, half_height] = page.half_inside();
-        let units = (0.5 * (right + left) / half_width).max(0.5 * (top + bottom) / half_height);
-        let height = if units > 0.0 { units * f64::from(page.height) } else { 1.0 };
-        let offset = 0.5 * (right - left) * frame.right + 0.5 * (top - bottom) * frame.up;
-        Self::orthographic(towards_viewer, center + offset, up, height, page)
-    }
-
     /// The eye as it was given, or the direction towards the viewer.
     pub fn viewpoint(&self) -> Viewpoint {
         self.viewpoint
@@ -252,30 +177,8 @@ impl Camera {
     }
 }
 
-impl Page {
-    fn check(&self) -> Result<(), CameraError> {
-        let Self { width, height, margin } = *self;
-        if ![width, height].iter().all(|side| (1..=MAX_SIDE).contains(side)) {
-            return Err(CameraError::Page { width, height });
-        }
-        if !(margin >= 0.0 && 2.0 * margin < f64::from(width.min(height))) {
-            return Err(CameraError::Margin { margin, width, height });
-        }
-        Ok(())
-    }
-
-    /// Half the width and half the height within the margin.
-    fn half_inside(&self) -> [f64; 2] {
-        self.sides().map(|side| 0.5 * side - self.margin)
-    }
-
-    fn sides(&self) -> [f64; 2] {
-        [self.width, self.height].map(f64::from)
-    }
-}
-
 impl Frame {
-    fn new(towards_viewer: DVec3, up: Option<DVec3>) -> Result<Self, CameraError> {
+    pub(crate) fn new(towards_viewer: DVec3, up: Option<DVec3>) -> Result<Self, CameraError> {
         check_point("the direction of the view", towards_viewer)?;
         if towards_viewer == DVec3::ZERO {
             return Err(CameraError::NoDirection);
@@ -300,40 +203,8 @@ impl Frame {
     }
 }
 
-/// How far points reach in N directions.
-struct Extent<const N: usize> {
-    /// Largest dot product with each direction, from the center.
-    most: [f64; N],
-    /// Of the box around the points.
-    center: DVec3,
-    /// Half the diagonal of that box.
-    radius: f64,
-}
-
-impl<const N: usize> Extent<N> {
-    /// All zero without points.
-    fn new(points: impl IntoIterator<Item = DVec3>, directions: [DVec3; N]) -> Self {
-        let mut most = [f64::NEG_INFINITY; N];
-        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for point in points {
-            (min, max) = (min.min(point), max.max(point));
-            for (most, direction) in most.iter_mut().zip(directions) {
-                *most = most.max(direction.dot(point));
-            }
-        }
-        if min.x > max.x {
-            return Self { most: [0.0; N], center: DVec3::ZERO, radius: 0.0 };
-        }
-        let center = 0.5 * (min + max);
-        for (most, direction) in most.iter_mut().zip(directions) {
-            *most -= direction.dot(center);
-        }
-        Self { most, center, radius: 0.5 * (max - min).length() }
-    }
-}
-
 /// Pixels from the eye to a page of that height.
-fn focal_length(vertical_fov: f64, page: Page) -> Result<f64, CameraError> {
+pub(crate) fn focal_length(vertical_fov: f64, page: Page) -> Result<f64, CameraError> {
     page.check()?;
     let tan = (0.5 * vertical_fov.to_radians()).tan();
     let focal_length = 0.5 * f64::from(page.height) / tan;
@@ -348,7 +219,7 @@ fn unit(direction: DVec3) -> DVec3 {
     (direction / direction.abs().max_element()).normalize()
 }
 
-fn check_point(what: &'static str, point: DVec3) -> Result<(), CameraError> {
+pub(crate) fn check_point(what: &'static str, point: DVec3) -> Result<(), CameraError> {
     if point.is_finite() && point.abs().max_element() <= MAX_COORDINATE {
         Ok(())
     } else {
@@ -356,63 +227,146 @@ fn check_point(what: &'static str, point: DVec3) -> Result<(), CameraError> {
     }
 }
 
-/// Why there is no such view.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CameraError {
-    /// A coordinate is NaN, infinite or beyond 1e60.
-    #[error("{what} is ({}, {}, {}), which is not finite or beyond 1e60", point.x, point.y, point.z)]
-    Coordinates {
-        /// The parameter.
-        what: &'static str,
-        /// Its value.
-        point: DVec3,
-    },
-    /// The eye is where it looks.
-    #[error("eye and target are both at ({}, {}, {})", eye.x, eye.y, eye.z)]
-    EyeAtTarget {
-        /// That point.
-        eye: DVec3,
-    },
-    /// The direction towards the viewer is zero.
-    #[error("the direction of the view is (0, 0, 0)")]
-    NoDirection,
-    /// The direction that points up is zero.
-    #[error("the direction up is (0, 0, 0)")]
-    NoUp,
-    /// The direction that was to point up points at the viewer, or away.
-    #[error("up ({}, {}, {}) is parallel to the view", up.x, up.y, up.z)]
-    UpParallel {
-        /// That direction.
-        up: DVec3,
-    },
-    /// The field of view is not between 0 and 180 degrees.
-    #[error("a field of view of {degrees} degrees is not between 0 and 180")]
-    FieldOfView {
-        /// What was asked for.
-        degrees: f64,
-    },
-    /// An orthographic view of no height.
-    #[error("a view {height} units high is not above 0")]
-    Height {
-        /// What was asked for.
-        height: f64,
-    },
-    /// A page without area, or too large.
-    #[error("a page of {width} x {height} pixels is not between 1 and 65535 on each side")]
-    Page {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
-    /// A margin that leaves no page.
-    #[error("a margin of {margin} pixels leaves nothing of a page of {width} x {height}")]
-    Margin {
-        /// Pixels.
-        margin: f64,
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: Page = Page { width: 400, height: 200, margin: 10.0 };
+
+    fn ahead() -> Camera {
+        // Half the height of the page is 1 unit at a distance of 1.
+        Camera::perspective(DVec3::Z, DVec3::ZERO, None, 90.0, PAGE).unwrap()
+    }
+
+    #[track_caller]
+    fn check(camera: &Camera, point: [f64; 3], expected: Option<[f64; 2]>) {
+        let found = camera.project(DVec3::from_array(point));
+        match (found, expected.map(DVec2::from_array)) {
+            (Some(found), Some(expected)) if found.distance(expected) < 1e-9 => {}
+            (None, None) => {}
+            (found, expected) => panic!("{point:?} lands at {found:?}, not {expected:?}"),
+        }
+    }
+
+    #[test]
+    fn right_is_right_and_up_is_up() {
+        check(&ahead(), [0.0, 0.0, 0.0], Some([200.0, 100.0]));
+        check(&ahead(), [1.0, 0.5, 0.0], Some([300.0, 50.0]));
+        check(&ahead(), [1.0, 0.5, -1.0], Some([250.0, 75.0]));
+        check(&ahead(), [0.0, 0.0, 1.0], None);
+        check(&ahead(), [0.0, 0.0, 2.0], None);
+        let flat = Camera::orthographic(DVec3::Z * 1e-60, DVec3::X, None, 2.0, PAGE).unwrap();
+        check(&flat, [2.0, 0.5, 77.0], Some([300.0, 50.0]));
+        assert_eq!(flat.pixel_size(DVec3::ONE), 0.01);
+        assert!((ahead().pixel_size(DVec3::NEG_Z) - 0.02).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_front_is_at_the_viewers_feet_seen_from_above_and_below() {
+        let seen_from = |y: f64| {
+            let eye = DVec3::new(0.0, y, 0.0);
+            let camera = Camera::perspective(eye, DVec3::ZERO, None, 90.0, PAGE).unwrap();
+            camera.project(DVec3::Z).unwrap()
+        };
+        assert!(seen_from(1.0).y > 100.0, "the near side of a table is low on the page");
+        assert!(seen_from(-1.0).y < 100.0, "the near side of a ceiling is high on the page");
+        assert_eq!((seen_from(1.0).x, seen_from(-1.0).x), (200.0, 200.0));
+    }
+
+    #[test]
+    fn the_viewpoint_is_the_eye_as_given() {
+        let eye = DVec3::new(0.1, 1e-30, -7e12);
+        let camera = Camera::perspective(eye, DVec3::ONE, None, 30.0, PAGE).unwrap();
+        assert_eq!(camera.viewpoint(), Viewpoint::at(eye));
+        let camera = Camera::orthographic(eye, DVec3::ONE, None, 1.0, PAGE).unwrap();
+        assert_eq!(camera.viewpoint(), Viewpoint::from_direction(eye));
+    }
+
+    #[track_caller]
+    fn check_clip(from: [f64; 3], to: [f64; 3], expected: Option<[f64; 2]>) {
+        let [from, to] = [from, to].map(DVec3::from_array);
+        let clipped = ahead().clip(from, to);
+        match (clipped.map(|c| c.range), expected) {
+            (Some(found), Some(expected)) => {
+                let apart = found[0] - expected[0] + found[1] - expected[1];
+                assert!(apart.abs() < 1e-9, "{found:?} is not {expected:?}");
+            }
+            (found, expected) => assert_eq!(found, expected),
+        }
+        let back = ahead().clip(to, from).map(|c| c.length());
+        assert_eq!(back.is_some(), clipped.is_some());
+        if let (Some(back), Some(clipped)) = (back, clipped) {
+            assert!((back - clipped.length()).abs() < 1e-4, "direction matters");
+        }
+    }
+
+    #[test]
+    fn segments_are_cut_at_the_border_of_the_page() {
+        check_clip([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], Some([0.0, 1.0]));
+        check_clip([0.0, 0.0, 0.0], [4.0, 0.0, 0.0], Some([0.0, 0.5]));
+        check_clip([0.0, -2.0, 0.0], [0.0, 2.0, 0.0], Some([0.25, 0.75]));
+        check_clip([-3.0, 1.5, 0.0], [3.0, 1.5, 0.0], None);
+        check_clip([0.0, 1.6, 0.0], [3.0, 0.0, 0.0], Some([0.375, 2.0 / 3.0]));
+        check_clip([0.0, 3.2, 0.0], [3.0, 0.0, 0.0], None);
+    }
+
+    #[test]
+    fn segments_behind_the_eye_are_cut_not_mirrored() {
+        check_clip([0.0, 0.0, 2.0], [0.0, 0.0, 3.0], None);
+        // Down the middle of the floor: seen from where the ray to the lower border meets it.
+        check_clip([0.0, -1.0, -1.0], [0.0, -1.0, 3.0], Some([0.0, 0.25]));
+        // Through the eye itself: seen up to it.
+        check_clip([0.0, 0.0, -1.0], [0.0, 0.0, 3.0], Some([0.0, 0.5]));
+        // In the plane of the eye.
+        check_clip([-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], None);
+    }
+
+    #[test]
+    fn the_middle_on_paper_is_nearer_to_the_near_end() {
+        let camera = ahead();
+        let [a, b] = [DVec3::new(-0.5, 0.0, 0.0), DVec3::new(1.0, 0.3, -3.0)];
+        let clipped = camera.clip(a, b).unwrap();
+        for on_page in [0.0, 0.25, 0.5, 1.0] {
+            let expected = clipped.page[0].lerp(clipped.page[1], on_page);
+            let point = a.lerp(b, clipped.fraction_in_space(on_page));
+            assert!(camera.project(point).unwrap().distance(expected) < 1e-9);
+        }
+        assert!(clipped.fraction_in_space(0.5) < 0.3);
+    }
+
+    #[test]
+    fn impossible_views_say_why() {
+        let nan = DVec3::new(f64::NAN, 0.0, 0.0);
+        let eye = DVec3::new(0.0, 3.0, 0.0);
+        let view = |eye, target, up, fov, page: Page| {
+            Camera::perspective(eye, target, up, fov, page).unwrap_err().to_string()
+        };
+        let none = DVec3::ZERO;
+        assert_eq!(
+            view(nan, none, None, 30.0, PAGE),
+            "the eye is (NaN, 0, 0), which is not finite or beyond 1e60"
+        );
+        assert_eq!(view(eye, eye, None, 30.0, PAGE), "eye and target are both at (0, 3, 0)");
+        assert_eq!(
+            view(eye, none, Some(DVec3::Y), 30.0, PAGE),
+            "up (0, 1, 0) is parallel to the view"
+        );
+        assert_eq!(view(eye, none, Some(none), 30.0, PAGE), "the direction up is (0, 0, 0)");
+        for fov in [0.0, -1.0, 180.0, 1e-320, f64::NAN, f64::INFINITY] {
+            assert!(view(eye, none, None, fov, PAGE).contains("is not between 0 and 180"));
+        }
+        let page =
+            |width, height, margin| view(eye, none, None, 30.0, Page { width, height, margin });
+        assert!(page(0, 9, 0.0).starts_with("a page of 0 x 9 pixels is not"));
+        assert!(page(9, 65_536, 0.0).starts_with("a page of 9 x 65536 pixels is not"));
+        for margin in [-1.0, 4.5, f64::NAN] {
+            assert!(page(9, 100, margin).ends_with("leaves nothing of a page of 9 x 100"));
+        }
+        for height in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = Camera::orthographic(eye, none, None, height, PAGE).unwrap_err();
+            assert!(matches!(error, CameraError::Height { .. }));
+        }
+        let error = Camera::orthographic(none, none, None, 1.0, PAGE).unwrap_err();
+        assert_eq!(error, CameraError::NoDirection);
+    }
 }

@@ -145,3 +145,101 @@ fn pair_straightest(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Positions around a circle, so that no two directions are the same.
+    fn points(count: usize) -> Mesh {
+        let angle = |i: usize| i as f32 * 2.4;
+        let positions =
+            (0..count).map(|i| Vec3::new(angle(i).cos(), angle(i).sin(), i as f32 * 0.1));
+        Mesh::new(positions.collect(), vec![]).unwrap()
+    }
+
+    fn segments(ends: &[[u32; 2]]) -> Vec<Segment> {
+        (0..).zip(ends).map(|(i, &ends)| Segment { ends, edge: EdgeId(10 * i) }).collect()
+    }
+
+    #[track_caller]
+    fn check(mesh: &Mesh, ends: &[[u32; 2]], expected: &[(&[u32], bool)]) {
+        let chains = chain(mesh, &segments(ends));
+        let found: Vec<(&[u32], bool)> =
+            chains.iter().map(|chain| (&chain.vertices[..], chain.closed)).collect();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn lines_are_joined_and_rings_closed() {
+        let mesh = points(6);
+        check(&mesh, &[], &[]);
+        check(&mesh, &[[3, 1]], &[(&[3, 1], false)]);
+        check(&mesh, &[[1, 2], [0, 1], [3, 2]], &[(&[0, 1, 2, 3], false)]);
+        check(&mesh, &[[1, 2], [0, 2], [1, 0]], &[(&[1, 2, 0], true)]);
+        check(&mesh, &[[0, 1], [4, 5], [2, 1]], &[(&[0, 1, 2], false), (&[4, 5], false)]);
+    }
+
+    #[test]
+    fn the_straightest_line_goes_on() {
+        let at = |x, y| Vec3::new(x, y, 0.0);
+        let cross = [at(0.0, 0.0), at(1.0, 0.0), at(-1.0, 0.1), at(0.0, 1.0), at(0.1, -1.0)];
+        let mesh = Mesh::new(cross.to_vec(), vec![]).unwrap();
+        let spokes = [[0, 1], [0, 3], [0, 2], [4, 0]];
+        check(&mesh, &spokes, &[(&[2, 0, 1], false), (&[4, 0, 3], false)]);
+        check(&mesh, &spokes[..3], &[(&[2, 0, 1], false), (&[0, 3], false)]);
+    }
+
+    #[test]
+    fn at_a_hub_of_very_many_lines_all_end() {
+        let mesh = points(40);
+        let spokes: Vec<[u32; 2]> = (1..40).map(|i| [0, i]).collect();
+        assert_eq!(chain(&mesh, &segments(&spokes)).len(), 39);
+        assert_eq!(chain(&mesh, &segments(&spokes[..32])).len(), 16);
+    }
+
+    proptest! {
+        #[test]
+        fn every_segment_is_in_one_chain(
+            ends in proptest::collection::btree_set((0u32..12, 0u32..12), 0..50),
+            turned in any::<u64>(),
+        ) {
+            let edges = ends.into_iter().filter(|(a, b)| a < b).enumerate();
+            let ends: Vec<_> =
+                edges.map(|(i, (a, b))| if turned >> i & 1 == 1 { [b, a] } else { [a, b] }).collect();
+            let (mesh, segments) = (points(12), segments(&ends));
+            let chains = chain(&mesh, &segments);
+            let mut found = Vec::new();
+            for chain in &chains {
+                let extra = usize::from(!chain.closed);
+                prop_assert_eq!(chain.vertices.len(), chain.edges.len() + extra);
+                prop_assert!(!chain.closed || chain.edges.len() > 2);
+                found.extend(chain.segments());
+            }
+            // Joints share vertices, because each segment is found with its own ends.
+            let sorted = |segments: &[Segment]| {
+                let mut all: Vec<_> = segments
+                    .iter()
+                    .map(|&Segment { ends: [a, b], edge }| (edge, a.min(b), a.max(b)))
+                    .collect();
+                all.sort_unstable();
+                all
+            };
+            prop_assert_eq!(sorted(&found), sorted(&segments));
+            // Below the limit, at most one line ends at a vertex for want of a partner.
+            let mut ending = [0; 12];
+            for chain in chains.iter().filter(|chain| !chain.closed) {
+                ending[chain.vertices[0] as usize] += 1;
+                ending[chain.vertices[chain.vertices.len() - 1] as usize] += 1;
+            }
+            prop_assert!(ending.iter().all(|&count| count < 2));
+            // The order of the input is no order of the output.
+            let mut reversed = segments.clone();
+            reversed.reverse();
+            prop_assert_eq!(super::chain(&mesh, &reversed), chains);
+        }
+    }
+}

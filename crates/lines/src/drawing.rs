@@ -52,7 +52,8 @@ impl Drawing {
     /// Chains and projects `segments`. Nothing hides anything: a view through glass.
     pub fn through_glass(mesh: &Mesh, segments: &Segments, camera: &Camera) -> Self {
         // A single sample per segment, which sees everything.
-        let params = VisibilityParams { step: f64::INFINITY, ..Default::default() };
+        let params =
+            VisibilityParams { step: f64::INFINITY, drop_specks: 0.0, ..Default::default() };
         Self::trace(mesh, segments, camera, &params, &mut |_, _| false)
     }
 

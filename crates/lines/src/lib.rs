@@ -1,11 +1,14 @@
 //! docs
 
 mod camera;
+mod camera_error;
 mod chain;
 mod color;
 mod drawing;
+mod fit;
 #[cfg(feature = "visibility")]
 mod occluders;
+mod page;
 #[cfg(feature = "png")]
 mod png;
 mod segments;
@@ -14,12 +17,14 @@ mod specks;
 mod svg;
 mod trace;
 
-pub use camera::{Camera, CameraError, Page};
+pub use camera::Camera;
+pub use camera_error::CameraError;
 pub use chain::{Chain, chain};
 pub use color::Color;
 pub use drawing::{Drawing, HiddenLines, Layer, Style};
 #[cfg(feature = "visibility")]
 pub use occluders::Occluders;
+pub use page::Page;
 #[cfg(feature = "png")]
 pub use png::{PngError, to_png};
 pub use segments::{LineClass, LineOptions, Segment, Segments};

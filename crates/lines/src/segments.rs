@@ -117,3 +117,69 @@ impl Segments {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use drypoint_mesh::{EdgeFilter, Viewpoint, contour_edges, shapes};
+    use glam::DVec3;
+
+    use super::*;
+
+    const ALL: LineOptions = LineOptions { boundary: true, crease_angle: Some(1.0) };
+
+    /// Counts of contours, boundaries and creases, seen from (9, 9, 9).
+    #[track_caller]
+    fn check(mesh: &Mesh, options: LineOptions, expected: [usize; 3]) {
+        let adjacency = MeshAdjacency::new(mesh);
+        let mut contours = Vec::new();
+        let viewpoint = Viewpoint::at(DVec3::splat(9.0));
+        contour_edges(mesh, &adjacency, viewpoint, EdgeFilter::All, &mut contours);
+        let segments = Segments::new(mesh, &adjacency, &contours, &options);
+        assert_eq!(LineClass::ALL.map(|class| segments.of(class).len()), expected);
+        let mut drawn: Vec<[u32; 2]> = Vec::new();
+        for class in LineClass::ALL {
+            assert!(segments.of(class).is_sorted_by_key(|segment| segment.edge));
+            for &Segment { ends, edge } in segments.of(class) {
+                assert_eq!(ends, [adjacency.wing(edge).tail, adjacency.wing(edge).head]);
+                assert_ne!(mesh.position(ends[0]), mesh.position(ends[1]));
+                drawn.push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+            }
+        }
+        let count = drawn.len();
+        drawn.sort_unstable();
+        drawn.dedup();
+        assert_eq!(drawn.len(), count, "an edge is drawn twice");
+    }
+
+    #[test]
+    fn an_edge_is_drawn_once_for_its_first_reason() {
+        let cube = shapes::cube();
+        check(&cube, LineOptions::default(), [6, 0, 0]);
+        check(&cube, ALL, [6, 0, 6]);
+        check(&cube, LineOptions { crease_angle: Some(0.0), ..ALL }, [6, 0, 6]);
+        check(&cube, LineOptions { crease_angle: Some(1.6), ..ALL }, [6, 0, 0]);
+        check(&shapes::one_triangle(), ALL, [0, 3, 0]);
+        check(&shapes::one_triangle(), LineOptions { boundary: false, ..ALL }, [0, 0, 0]);
+        check(&shapes::empty(), ALL, [0, 0, 0]);
+    }
+
+    #[test]
+    fn several_wings_are_one_line() {
+        // Of the 23 edges the common one parts the front of one cube from the back of the other.
+        check(&shapes::cubes_sharing_an_edge(), ALL, [13, 0, 10]);
+        check(&shapes::book(5), ALL, [1, 10, 0]);
+    }
+
+    #[test]
+    fn a_fold_is_a_crease() {
+        let mesh = shapes::folded_sheet();
+        let adjacency = MeshAdjacency::new(&mesh);
+        let segments = Segments::new(&mesh, &adjacency, &[], &ALL);
+        assert_eq!(segments.of(LineClass::Crease).len(), 3);
+    }
+
+    #[test]
+    fn no_line_has_length_zero() {
+        check(&shapes::zero_area_fan(), ALL, [0, 10, 0]);
+    }
+}

@@ -6,6 +6,12 @@ use glam::DVec2;
 use crate::camera::Clipped;
 use crate::{Camera, Chain, Segment};
 
+/// Most samples of a segment, whatever the step: a bad parameter costs time, but ends.
+const MAX_SAMPLES: f64 = 1e6;
+
+/// Pixels below which bisection would run out of bits.
+const MIN_PRECISION: f64 = 1e-6;
+
 /// How finely visibility is found and how its noise is cleaned, all in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibilityParams {
@@ -131,6 +137,7 @@ fn pieces(mesh: &Mesh, chain: &Chain, camera: &Camera) -> Vec<Piece> {
 
 /// Samples each piece and finds where visibility changes.
 fn spans(pieces: &[Piece], params: &VisibilityParams, is_hidden: &mut IsHidden<'_>) -> Vec<Span> {
+    let precision = params.precision.max(MIN_PRECISION);
     let mut is_hidden_at = |piece: &Piece, on_page: f64| {
         is_hidden(piece.ends, piece.clipped.fraction_in_space(on_page))
     };
@@ -138,7 +145,7 @@ fn spans(pieces: &[Piece], params: &VisibilityParams, is_hidden: &mut IsHidden<'
     // hides the line is a matter of the direction one comes from.
     let mut samples: Vec<Vec<(f64, bool)>> = Vec::with_capacity(pieces.len());
     for piece in pieces {
-        let count = (piece.clipped.length() / params.step).ceil().max(1.0);
+        let count = (piece.clipped.length() / params.step).ceil().clamp(1.0, MAX_SAMPLES);
         let middles = (0..).map(|i| (f64::from(i) + 0.5) / count).take_while(|&s| s < 1.0);
         samples.push(middles.map(|s| (s, is_hidden_at(piece, s))).collect());
     }
@@ -155,7 +162,7 @@ fn spans(pieces: &[Piece], params: &VisibilityParams, is_hidden: &mut IsHidden<'
         let length = piece.clipped.length();
         let mut ticks = samples[index].clone();
         // Then near the vertices where the next piece says otherwise, and at ends of the line.
-        let near = (0.5 * params.precision / length).min(0.1 / ticks.len() as f64);
+        let near = (0.5 * precision / length).min(0.1 / ticks.len() as f64);
         if before(index) != first_of(index) {
             ticks.insert(0, (near, is_hidden_at(piece, near)));
         }
@@ -168,7 +175,7 @@ fn spans(pieces: &[Piece], params: &VisibilityParams, is_hidden: &mut IsHidden<'
             if hidden == then {
                 continue;
             }
-            while (high - low) * length > params.precision {
+            while (high - low) * length > precision {
                 let middle = 0.5 * (low + high);
                 if is_hidden_at(piece, middle) == hidden { low = middle } else { high = middle }
             }
