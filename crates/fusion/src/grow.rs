@@ -1,0 +1,80 @@
+//! From edges to lists of edges: every part of space on its own, in parallel.
+
+use drypoint_mesh::EdgeId;
+use rayon::prelude::*;
+
+use crate::extent::{Extent, MeanExtent, ReducedExtent};
+use crate::geometry::Frame;
+use crate::greedy::{Settings, fuse_greedily};
+use crate::partition::{Placed, split_in_space};
+use crate::progress::Counter;
+use crate::{Cancelled, FusionParams, SphereKind};
+
+/// Edges that are worth culling together, and those that are not.
+#[derive(Debug, Default)]
+pub(crate) struct Grown {
+    /// Each in order of ids; patches of one part of space one after another, by their first edge.
+    pub(crate) patches: Vec<Vec<EdgeId>>,
+    /// In no order of use, but the same every time.
+    pub(crate) always_tested: Vec<EdgeId>,
+}
+
+/// Groups `edges`.
+pub(crate) fn grow(
+    frame: &Frame,
+    edges: Vec<EdgeId>,
+    params: &FusionParams,
+    counter: &Counter,
+) -> Result<Grown, Cancelled> {
+    let (fusible, without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
+        edges.into_par_iter().partition(|&edge| frame.shape(edge).is_some());
+    counter.count(2 * without_shape.len())?;
+    let mut placed: Vec<Placed> =
+        fusible.iter().map(|&edge| Placed { edge, midpoint: frame.midpoint(edge) }).collect();
+    let most = params.max_partition.map_or(usize::MAX, |most| most as usize);
+    let parts = split_in_space(&mut placed, most);
+    counter.count(0)?;
+
+    let grow_part = match params.sphere {
+        SphereKind::Mean => grow_part::<MeanExtent>,
+        SphereKind::Reduced => grow_part::<ReducedExtent>,
+    };
+    let grown: Vec<Grown> = parts
+        .par_iter()
+        .map(|part| grow_part(frame, part, params, counter))
+        .collect::<Result<_, _>>()?;
+    let mut all = Grown { patches: Vec::new(), always_tested: without_shape };
+    for mut part in grown {
+        all.patches.append(&mut part.patches);
+        all.always_tested.append(&mut part.always_tested);
+    }
+    Ok(all)
+}
+
+fn grow_part<E: Extent>(
+    frame: &Frame,
+    part: &[EdgeId],
+    params: &FusionParams,
+    counter: &Counter,
+) -> Result<Grown, Cancelled> {
+    counter.check()?;
+    let shapes: Vec<_> = part.iter().filter_map(|&edge| frame.shape(edge)).collect();
+    debug_assert_eq!(shapes.len(), part.len(), "edges without a shape are in no part");
+    let settings = Settings { model: params.cost, cache_size: params.cache_size.max(1) as usize };
+    let clusters = fuse_greedily::<E>(&shapes, settings, &|steps| counter.count(steps))?;
+    counter.count(clusters.len())?;
+
+    let mut grown = Grown::default();
+    for cluster in clusters {
+        let mut edges: Vec<_> = cluster.edges.iter().map(|&number| part[number as usize]).collect();
+        edges.sort_unstable();
+        // Otherwise it is no dearer to test all its edges from everywhere.
+        if cluster.cost < edges.len() as f64 {
+            grown.patches.push(edges);
+        } else {
+            grown.always_tested.append(&mut edges);
+        }
+    }
+    grown.patches.sort_unstable();
+    Ok(grown)
+}

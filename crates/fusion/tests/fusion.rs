@@ -1,0 +1,234 @@
+//! Fusing real and hostile meshes: nothing is lost, nothing depends on threads.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use drypoint_fusion::{
+    Cancelled, CostModel, FusionParams, InvalidPatches, PatchSet, Progress, SphereKind, fuse,
+};
+use drypoint_mesh::{
+    EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges, is_contour, shapes,
+};
+use glam::{DVec3, Vec3};
+
+/// Every preset, and settings that nobody should choose.
+const ALL_PARAMS: [FusionParams; 8] = [
+    FusionParams::PAPER,
+    FusionParams::PAPER_MEAN,
+    FusionParams { max_partition: None, ..FusionParams::PAPER },
+    FusionParams { max_partition: Some(64), cache_size: 3, ..FusionParams::PAPER_MEAN },
+    FusionParams { max_partition: Some(0), cache_size: 0, ..FusionParams::PAPER },
+    with_cost(0.5, 1.0),
+    with_cost(20.0, 1000.0),
+    with_cost(f64::NAN, f64::NAN),
+];
+
+const fn with_cost(patch_test: f64, view_distance: f64) -> FusionParams {
+    FusionParams { cost: CostModel { patch_test, view_distance }, ..FusionParams::PAPER }
+}
+
+const FILTERS: [EdgeFilter; 2] = [EdgeFilter::Convex, EdgeFilter::All];
+
+fn fuse_silently(mesh: &Mesh, filter: EdgeFilter, params: &FusionParams) -> PatchSet {
+    let adjacency = MeshAdjacency::new(mesh);
+    fuse(mesh, &adjacency, filter, params, &|_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Viewpoints near and far, in planes of faces, on vertices, and orthographic ones.
+fn viewpoints(mesh: &Mesh) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds() else { return vec![Viewpoint::at(DVec3::ONE)] };
+    let (center, unit) = (bounds.center(), bounds.half_longest_side());
+    let directions = (0..20).map(|i| {
+        // A spiral from pole to pole.
+        let (z, turn) = (f64::from(i) / 9.5 - 1.0, 2.4 * f64::from(i));
+        DVec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z)
+    });
+    let mut viewpoints = Vec::new();
+    for direction in directions {
+        viewpoints.extend(
+            [0.3, 1.01, 2.0, 10.0, 1000.0].map(|d| Viewpoint::at(center + unit * d * direction)),
+        );
+        viewpoints.push(Viewpoint::from_direction(direction));
+    }
+    for (i, &triangle) in
+        mesh.triangles().iter().enumerate().step_by(1 + mesh.triangles().len() / 12)
+    {
+        let [a, b, c] = triangle.map(|v| mesh.position(v).as_dvec3());
+        let slide = 3.0 + i as f64 % 5.0;
+        viewpoints.extend([a, a + slide * (b - a), b - slide * (c - b)].map(Viewpoint::at));
+    }
+    viewpoints
+}
+
+/// Fuses, and compares with the definition what is left after culling.
+#[track_caller]
+fn check(name: &str, mesh: &Mesh, filter: EdgeFilter, params: &FusionParams) {
+    let adjacency = MeshAdjacency::new(mesh);
+    let set = fuse(mesh, &adjacency, filter, params, &|_| ControlFlow::Continue(())).unwrap();
+    let context = format!("{name}, {filter:?}, {params:?}");
+    assert_eq!(set.validate(), Ok(()), "{context}");
+    assert_eq!(set.validate_against(mesh, &adjacency), Ok(()), "{context}");
+
+    let mut expected = Vec::new();
+    for viewpoint in viewpoints(mesh) {
+        contour_edges(mesh, &adjacency, viewpoint, filter, &mut expected);
+        let survivors = set.patches().iter().filter(|p| p.bound.may_hold_contour(viewpoint));
+        let places = survivors.flat_map(|patch| patch.edges()).chain(set.always_tested());
+        let mut found: Vec<EdgeId> = places
+            .map(|place| place as usize)
+            .filter(|&place| is_contour(set.positions(), &set.wings()[place], viewpoint))
+            .map(|place| set.edge_ids()[place])
+            .collect();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{context}, from {viewpoint:?}");
+    }
+}
+
+#[test]
+fn no_contour_edge_is_culled_on_any_shape() {
+    for shape in shapes::all() {
+        for filter in FILTERS {
+            check(shape.name, &shape.mesh, filter, &FusionParams::PAPER);
+            check(shape.name, &shape.mesh, filter, &FusionParams::PAPER_MEAN);
+        }
+    }
+}
+
+#[test]
+fn no_settings_lose_an_edge() {
+    for name in ["icosphere", "cad-part", "open-grid", "book", "zero-area-fan", "one-triangle"] {
+        let mesh = shapes::by_name(name, 300).unwrap();
+        for params in &ALL_PARAMS {
+            for filter in FILTERS {
+                check(name, &mesh, filter, params);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_plane_is_always_tested() {
+    let collinear = (0..9u8).map(|i| Vec3::splat(f32::from(i))).collect();
+    let all_degenerate = Mesh::new(collinear, (0..7).map(|i| [i, i + 1, i + 2]).collect()).unwrap();
+    let one_point = Mesh::new(vec![Vec3::ONE; 3], vec![[0, 1, 2]]).unwrap();
+    for mesh in [all_degenerate, one_point, shapes::empty(), shapes::one_triangle()] {
+        for filter in FILTERS {
+            check("degenerate", &mesh, filter, &FusionParams::PAPER);
+            let set = fuse_silently(&mesh, filter, &FusionParams::PAPER);
+            assert!(set.patches().is_empty());
+            assert!(set.expected_cost().is_finite() && set.summary().mean_half_angle == 0.0);
+        }
+    }
+}
+
+/// Neither the unit of a mesh nor its place changes its patches.
+#[test]
+fn scale_and_place_change_nothing() {
+    let mesh = shapes::bumpy_sphere(2_000);
+    let set = fuse_silently(&mesh, EdgeFilter::Convex, &FusionParams::PAPER);
+    let larger = mesh.positions().iter().map(|p| *p * 1024.0).collect();
+    let larger = Mesh::new(larger, mesh.triangles().to_vec()).unwrap();
+    let larger = fuse_silently(&larger, EdgeFilter::Convex, &FusionParams::PAPER);
+    assert_eq!(larger.edge_ids(), set.edge_ids());
+    let sizes = |set: &PatchSet| set.patches().iter().map(|p| p.edge_count).collect::<Vec<_>>();
+    assert_eq!(sizes(&larger), sizes(&set));
+    assert!((larger.expected_cost() - set.expected_cost()).abs() < 1e-3);
+}
+
+/// Culling nothing would pass every other test.
+#[test]
+fn a_ball_is_mostly_culled() {
+    let mesh = shapes::icosphere(20_000);
+    for params in [FusionParams::PAPER, FusionParams::PAPER_MEAN] {
+        let set = fuse_silently(&mesh, EdgeFilter::Convex, &params);
+        let edges = set.wings().len() as f64;
+        assert!(set.patches().len() as f64 > 0.01 * edges && set.always_tested().len() < 20);
+        assert!(set.expected_cost() < 0.35 * edges, "{} of {edges}", set.expected_cost());
+        let survivors = |viewpoint: Viewpoint| {
+            let survive = |p: &&drypoint_fusion::Patch| p.bound.may_hold_contour(viewpoint);
+            set.patches().iter().filter(survive).map(|p| p.edge_count).sum::<u32>()
+        };
+        let tested = survivors(Viewpoint::at(DVec3::new(3.0, 4.0, 9.0)));
+        assert!(f64::from(tested) < 0.3 * edges, "{tested} of {edges}");
+    }
+}
+
+#[test]
+fn any_number_of_threads_makes_the_same_bytes() {
+    let mesh = shapes::bumpy_sphere(4_000);
+    for sphere in [SphereKind::Mean, SphereKind::Reduced] {
+        let params = FusionParams { sphere, max_partition: Some(256), ..FusionParams::PAPER };
+        let with_threads = |count| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+            pool.install(|| fuse_silently(&mesh, EdgeFilter::Convex, &params).to_bytes())
+        };
+        assert_eq!(with_threads(1), with_threads(8));
+    }
+}
+
+#[test]
+fn the_memory_of_partners_changes_nothing() {
+    let mesh = shapes::torus_knot(1_500);
+    let with_cache = |cache_size| {
+        let params = FusionParams { cache_size, ..FusionParams::PAPER };
+        let set = fuse_silently(&mesh, EdgeFilter::All, &params);
+        (set.patches().to_vec(), set.edge_ids().to_vec())
+    };
+    let plain = with_cache(u32::MAX / 4);
+    for cache_size in [1, 2, 7, 50] {
+        assert_eq!(with_cache(cache_size), plain);
+    }
+}
+
+#[test]
+fn progress_comes_to_an_end() {
+    let mesh = shapes::bumpy_sphere(3_000);
+    let adjacency = MeshAdjacency::new(&mesh);
+    let params = FusionParams { max_partition: Some(500), ..FusionParams::PAPER };
+    let (calls, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let edges = adjacency.edges(EdgeFilter::Convex).count();
+    let on_progress = |progress: Progress| {
+        calls.fetch_add(1, Ordering::Relaxed);
+        most.fetch_max(progress.edges_done, Ordering::Relaxed);
+        assert!(progress.edges == edges && progress.edges_done <= edges);
+        assert!((0.0..=1.0).contains(&progress.fraction()));
+        ControlFlow::Continue(())
+    };
+    fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &on_progress).unwrap();
+    assert_eq!(most.into_inner(), edges);
+    assert!(calls.into_inner() > 5);
+}
+
+#[test]
+fn a_break_ends_it_at_once() {
+    let mesh = shapes::bumpy_sphere(60_000);
+    let adjacency = MeshAdjacency::new(&mesh);
+    let params = FusionParams { max_partition: None, ..FusionParams::PAPER };
+    for last in [0, 1, 20] {
+        let calls = AtomicUsize::new(0);
+        let stopped = std::sync::OnceLock::new();
+        let on_progress = |_| {
+            if calls.fetch_add(1, Ordering::Relaxed) < last {
+                return ControlFlow::Continue(());
+            }
+            stopped.get_or_init(Instant::now);
+            ControlFlow::Break(())
+        };
+        let result = fuse(&mesh, &adjacency, EdgeFilter::All, &params, &on_progress);
+        assert_eq!(result, Err(Cancelled));
+        // Generous, for a machine that is busy with other things.
+        assert!(stopped.get().unwrap().elapsed() < Duration::from_secs(2));
+    }
+}
+
+#[test]
+fn another_mesh_is_noticed() {
+    let mesh = shapes::icosphere(300);
+    let set = fuse_silently(&mesh, EdgeFilter::Convex, &FusionParams::PAPER);
+    let other = shapes::icosphere(1_000);
+    assert_eq!(
+        set.validate_against(&other, &MeshAdjacency::new(&other)),
+        Err(InvalidPatches::AnotherMesh)
+    );
+}
