@@ -235,7 +235,8 @@ impl Sightlines<'_> {
             return None;
         }
         border.pass(from, eye, shift, [q, r]);
-        border.hit().filter(|_| is_between([corner, q, r], other, other_eye))
+        // In an orthographic view the other end may be much farther from the plane than the sample.
+        border.hit().filter(|_| is_between([corner, q, r], other, eye))
     }
 }
 
