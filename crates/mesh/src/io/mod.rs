@@ -20,12 +20,17 @@
 //! # Ok::<(), drypoint_mesh::io::ReadError>(())
 //! ```
 
+// What readers share lies idle where only some of them are built.
+#![cfg_attr(
+    not(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf")),
+    allow(dead_code, unused_variables, reason = "the readers that need it are not built")
+)]
+
 mod error;
 mod format;
 mod parts;
 #[cfg(any(feature = "obj", feature = "ply"))]
 mod polygon;
-#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod text;
 
 #[cfg(feature = "gltf")]
@@ -77,10 +82,6 @@ pub fn parse(format: Format, bytes: &[u8]) -> Result<Model, ReadError> {
 ///
 /// # Errors
 /// Whatever is wrong with the file or its buffers.
-#[cfg_attr(
-    not(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf")),
-    expect(unused_variables, reason = "the readers that take them are not built")
-)]
 pub fn parse_in(format: Format, bytes: &[u8], folder: Option<&Path>) -> Result<Model, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::Empty);

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-#[cfg(any(feature = "obj", feature = "ply", feature = "stl", feature = "gltf"))]
-use {super::ReadError, crate::MAX_TRIANGLES, crate::MeshError, glam::Vec3};
+use glam::Vec3;
 
-use crate::Mesh;
+use super::ReadError;
+use crate::{MAX_TRIANGLES, Mesh, MeshError};
 
 /// A mesh and the names that the file gives to runs of its triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,14 +28,12 @@ pub struct Part {
 }
 
 /// Parts while a file is read.
-#[cfg(any(feature = "obj", feature = "ply", feature = "stl", feature = "gltf"))]
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     /// Names, each with the number of triangles before it.
     starts: Vec<(String, usize)>,
 }
 
-#[cfg(any(feature = "obj", feature = "ply", feature = "stl", feature = "gltf"))]
 impl Parts {
     /// From here on, triangles belong to `name`. A part without triangles is dropped; one of the
     /// same name as the part before it is a continuation.

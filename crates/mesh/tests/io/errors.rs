@@ -309,6 +309,16 @@ fn primitive(primitive: &str, add: impl Fn(&mut Gltf)) -> Vec<u8> {
     ))
 }
 
+/// Checks a file whose positions are this accessor, beside a view of 36 bytes.
+#[track_caller]
+fn check_accessor(fields: &str, message: &str) {
+    let bytes = primitive(r#""attributes": {"POSITION": 0}"#, |gltf| {
+        gltf.view(&[0; 36]);
+        gltf.accessor(fields);
+    });
+    check(Format::Gltf, bytes, message);
+}
+
 #[test]
 fn bad_gltf_accessors_are_refused() {
     let only = r#""attributes": {"POSITION": 0}"#;
@@ -335,13 +345,7 @@ fn bad_gltf_accessors_are_refused() {
     });
     check(Format::Gltf, bytes, &format!("{of}: is not a known primitive mode"));
 
-    let check = |fields: &str, message: &str| {
-        let bytes = primitive(only, |gltf| {
-            gltf.view(&[0; 36]);
-            gltf.accessor(fields);
-        });
-        self::check(Format::Gltf, bytes, message);
-    };
+    let check = check_accessor;
     let floats = r#""componentType": 5126, "type": "VEC3""#;
     check(&format!(r#""count": 3, {floats}"#), "accessors[0]: has no bufferView");
     let view = r#""bufferView": 0"#;
@@ -362,6 +366,13 @@ fn bad_gltf_accessors_are_refused() {
         &format!(r#""bufferView": 9, "count": 3, {floats}"#),
         "accessors[0]: uses bufferViews[9], but there are only 1",
     );
+}
+
+#[test]
+fn bad_sparse_gltf_accessors_are_refused() {
+    let check = check_accessor;
+    let floats = r#""componentType": 5126, "type": "VEC3""#;
+    let short = |needed: u64| format!("accessors[0]: needs {needed} bytes, but there are only 36");
     let sparse = |count: u64, sparse: u64, component: u16| {
         format!(
             r#""count": {count}, {floats}, "sparse": {{"count": {sparse}, "values": {{"bufferView": 0}},
