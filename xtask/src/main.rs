@@ -6,6 +6,7 @@
 
 mod bench;
 mod ci;
+mod compiler;
 mod manifest;
 mod models;
 mod mutants;
