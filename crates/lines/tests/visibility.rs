@@ -113,8 +113,8 @@ fn every_model_hides_what_the_naive_test_says() {
     for name in ["stanford-bunny", "fandisk", "teapot", "suzanne", "sponza", "beetle-alt"] {
         let path = std::path::Path::new(&folder).join(name).with_extension("obj");
         let mesh = io::read(&path).unwrap().mesh;
-        let counts = check(name, &mesh, 1 + mesh.triangles().len() / 40);
-        assert!(counts[0] > 20 && counts[1] > 100, "{name}: only {counts:?} told");
+        let counts = check(name, &mesh, 1 + mesh.triangles().len() / 20);
+        assert!(counts[0] > 10 && counts[1] > 50, "{name}: only {counts:?} told");
     }
 }
 
@@ -152,27 +152,54 @@ fn check_close(found: [f64; 2], expected: [f64; 2], tolerance: f64, what: &str) 
 /// The lengths found by walking lines step by step are those of very many samples.
 #[test]
 fn runs_end_where_lines_vanish() {
+    const FINE: f64 = 0.1;
+    let params = VisibilityParams { step: FINE, ..EXACT };
     for name in ["torus-knot", "bumpy-sphere", "cad-part", "mobius-strip", "cubes-sharing-an-edge"]
     {
-        let mesh = shapes::by_name(name, 700).unwrap();
+        let mesh = shapes::by_name(name, 300).unwrap();
         let adjacency = MeshAdjacency::new(&mesh);
-        let camera = fitted(&mesh, DVec3::new(0.3, 0.5, 0.8));
+        let points = mesh.positions().iter().map(|p| p.as_dvec3());
+        // A wide lens from nearby: fractions on paper are far from those in space.
+        let towards_viewer = DVec3::new(0.3, 0.5, 0.8);
+        let camera = Camera::fit_perspective(points, towards_viewer, None, 100.0, PAGE).unwrap();
         let contours = contours(&mesh, &adjacency, &camera);
         let segments = Segments::new(&mesh, &adjacency, &contours, &EVERYTHING);
         let occluders = Occluders::new(&mesh, &adjacency);
         let mut expected = [0.0, 0.0];
         for segment in LineClass::ALL.iter().flat_map(|&class| segments.of(class)) {
             let [a, b] = segment.ends.map(|v| mesh.position(v).as_dvec3());
-            let point = |i: f64| camera.project(a.lerp(b, i / 500.0)).unwrap();
-            for i in (0..500).map(f64::from) {
-                let fraction = (i + 0.5) / 500.0;
+            let [from, to] = [a, b].map(|p| camera.project(p).unwrap());
+            let count = (from.distance(to) / FINE).ceil();
+            let at = |i: f64| camera.project(a.lerp(b, i / count)).unwrap();
+            for i in (0..).map(f64::from).take_while(|&i| i < count) {
+                let fraction = (i + 0.5) / count;
                 let hidden = occluders.is_hidden(segment.ends, fraction, camera.viewpoint());
-                expected[usize::from(hidden)] += point(i).distance(point(i + 1.0));
+                expected[usize::from(hidden)] += at(i).distance(at(i + 1.0));
             }
         }
-        let drawing = Drawing::new(&occluders, &segments, &camera, &EXACT);
-        let total = expected[0] + expected[1];
-        check_close(lengths(&drawing), expected, 2e-3 * total, name);
+        let drawing = Drawing::new(&occluders, &segments, &camera, &params);
+        let runs: usize = drawing.layers.iter().map(|layer| layer.runs.len()).sum();
+        check_close(lengths(&drawing), expected, 0.2 * FINE * runs as f64, name);
+    }
+}
+
+/// What a sample sees from within a hair of a vertex is what one sees a little further on.
+#[test]
+fn visibility_does_not_change_at_a_vertex() {
+    for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
+        let mesh = shapes::by_name(name, 3000).unwrap();
+        let adjacency = MeshAdjacency::new(&mesh);
+        let occluders = Occluders::new(&mesh, &adjacency);
+        for viewpoint in viewpoints(&mesh) {
+            for edge in adjacency.edge_ids() {
+                let [a, b] = adjacency.wing(edge).ends();
+                for ends in [[a, b], [b, a]] {
+                    let [near, further] =
+                        [1e-13, 1e-4].map(|f| occluders.is_hidden(ends, f, viewpoint));
+                    assert_eq!(near, further, "{name}: {ends:?} from {viewpoint:?}");
+                }
+            }
+        }
     }
 }
 
@@ -314,7 +341,8 @@ fn check_bar(width: f32, expected: &[bool]) {
     let options = LineOptions { boundary: true, crease_angle: None };
     let segments = Segments::new(&mesh, &adjacency, &[], &options);
     let occluders = Occluders::new(&mesh, &adjacency);
-    let drawing = Drawing::new(&occluders, &segments, &camera, &VisibilityParams::default());
+    let params = VisibilityParams { step: 0.1, ..VisibilityParams::default() };
+    let drawing = Drawing::new(&occluders, &segments, &camera, &params);
     let runs = drawing.layers[1].runs.iter();
     let of_line = runs.filter(|run| run.points.iter().any(|p| (p.y - 250.0).abs() < 1e-6));
     // The line is a side of a triangle, so its visible parts are one run around the others.
