@@ -5,12 +5,12 @@
 //! around the directions, taken as points, cuts the sphere. Two or three of them hold it up. They
 //! propose Welzl's method, whose expected linear time rests on a random order; here the farthest
 //! point outside is taken in instead (Gärtner, Fast and Robust Smallest Enclosing Balls, ESA 1999),
-//! which needs no order, and on normals of patches few scans.
+//! which needs no order, and 2 to 6 scans on patches of up to 80 edges of a bumpy ball.
 
 use glam::DVec3;
 
-/// Scans after which a cap is taken as it is. The radius grows with each, so that only rounding can
-/// keep it going; on meshes 3 to 8 is usual.
+/// Scans after which a cap is taken as it is. The radius grows with each, so that only rounding could
+/// keep it going for so long.
 const MAX_SCANS: usize = 64;
 
 /// The axis of the smallest cap around unit vectors, to within rounding; `None` if there are none,

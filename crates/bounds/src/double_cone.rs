@@ -32,8 +32,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use drypoint_mesh::Viewpoint;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
+use crate::cone::is_unit;
 use crate::spatialized::acceptance;
 use crate::{NormalCone, SpatializedNormalCone};
 
@@ -82,7 +83,8 @@ impl DoubleCone {
     /// The vector to the viewpoint is taken in f64 and then rounded once, so that a viewpoint close
     /// to a mesh far from the origin is not moved. A shader that is given a viewpoint of f32 gets
     /// the same vector from one f32 subtraction. The direction of an orthographic view is
-    /// normalized first, so that its squares fit; a shader should be handed it so.
+    /// normalized first, so that its squares fit; a shader should be handed it so. To take the
+    /// contours from one viewpoint and cull from another, rounded one loses edges.
     pub fn may_hold_contour(&self, viewpoint: Viewpoint) -> bool {
         if viewpoint.is_point() {
             let to_viewpoint = viewpoint.from_point(self.center.as_dvec3());
@@ -122,14 +124,16 @@ impl DoubleCone {
 }
 
 /// Rounds outward, so that whatever `bound` keeps, in f64, is kept in f32. What rounding turned the
-/// axis by is measured; [`SLACK`] pays for the rest, and for the arithmetic at run time. [`DoubleCone::ALWAYS`] if α is above [`MAX_HALF_ANGLE`], or a number is
-/// NaN or does not fit.
+/// axis by is measured; [`SLACK`] pays for the rest, and for the arithmetic at run time.
+///
+/// [`DoubleCone::ALWAYS`] if α is above [`MAX_HALF_ANGLE`], the axis is not of unit length, or a
+/// number is NaN or does not fit an f32.
 impl From<SpatializedNormalCone> for DoubleCone {
     fn from(bound: SpatializedNormalCone) -> Self {
         let SpatializedNormalCone { cone, sphere } = bound;
         let (axis, center) = (cone.axis.as_vec3(), sphere.center.as_vec3());
         let tilt = axis.as_dvec3().cross(cone.axis).length();
-        if cone.half_angle() > MAX_HALF_ANGLE || !is_unit(axis) {
+        if cone.half_angle() > MAX_HALF_ANGLE || !is_unit(cone.axis) {
             return Self::ALWAYS;
         }
         let half_angle = cone.half_angle() + tilt + SLACK;
@@ -150,11 +154,6 @@ impl From<SpatializedNormalCone> for DoubleCone {
     }
 }
 
-fn is_unit(axis: Vec3) -> bool {
-    let DVec3 { x, y, z } = axis.as_dvec3();
-    (x * x + y * y + z * z - 1.0).abs() <= 1e-6
-}
-
 /// The least f32 that is not below `x`.
 fn round_up(x: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "the next line mends what is lost")]
@@ -165,6 +164,8 @@ fn round_up(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use std::mem::offset_of;
+
+    use glam::DVec3;
 
     use super::*;
     use crate::Sphere;

@@ -42,7 +42,7 @@ fn sign() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(cases(100_000))]
+    #![proptest_config(cases(50_000))]
 
     /// Ring 1. Any patch from anywhere: from inside it to 10⁴ times its size away, and at infinity.
     #[test]
