@@ -104,8 +104,14 @@ pub(crate) fn runs(
     let mut runs = Vec::new();
     let starts = |span: &Span| span.from == 0.0 && !pieces[span.piece].joined;
     for strand in spans.chunk_by(|_, next| !starts(next)) {
-        let stretches = close_gaps(stretches(&pieces, strand), is_ring, params.close_gaps);
+        let mut stretches = close_gaps(stretches(&pieces, strand), is_ring, params.close_gaps);
         let closed = is_ring && stretches.len() == 1;
+        if closed {
+            // Where a gap was closed the ring may start within an edge.
+            let spans = &mut stretches[0].spans;
+            let start = spans.iter().position(|span| span.from == 0.0);
+            spans.rotate_left(start.unwrap_or(0));
+        }
         runs.extend(stretches.iter().filter_map(|stretch| run(&pieces, stretch, closed)));
     }
     runs

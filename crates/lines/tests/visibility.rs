@@ -329,31 +329,66 @@ fn from_inside_a_room_its_edges_are_seen() {
     check_close(lengths(&drawing), [8.0 * half + to_corners, 0.0], 1e-6, "a room");
 }
 
-/// A bar of some width in front of a long edge.
-#[track_caller]
-fn check_bar(width: f32, expected: &[bool]) {
-    let bar =
-        |z: f32| [Vec3::new(-width, -3.0, z), Vec3::new(width, -3.0, z), Vec3::new(0.0, 30.0, z)];
-    let line = [Vec3::new(-5.0, 0.0, 0.0), Vec3::new(5.0, 0.0, 0.0), Vec3::new(0.0, -5.0, -9.0)];
-    let mesh = Mesh::new([line, bar(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+/// Of a line along the x axis from `from` to `to`, with an upright bar between −half_width and
+/// half_width in front of it: the ranges of x that are visible. A unit is 50 pixels. The line is
+/// alone as a contour, and one side of a closed chain as a boundary.
+fn beside_bar(
+    half_width: f32,
+    [from, to]: [f32; 2],
+    class: LineClass,
+    params: &VisibilityParams,
+) -> Vec<[f64; 2]> {
+    let bar = [[-1.0, -9.0], [1.0, -9.0], [1.0, 9.0], [-1.0, 9.0]]
+        .map(|[x, y]| Vec3::new(half_width * x, y, 1.0));
+    let line = [Vec3::new(from, 0.0, 0.0), Vec3::new(to, 0.0, 0.0), Vec3::new(to, 0.0, -9.0)];
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6]];
+    let mesh = Mesh::new([&bar[..], &line[..]].concat(), triangles).unwrap();
     let camera = Camera::orthographic(DVec3::Z, DVec3::ZERO, None, 10.0, PAGE).unwrap();
     let adjacency = MeshAdjacency::new(&mesh);
-    let options = LineOptions { boundary: true, crease_angle: None };
-    let segments = Segments::new(&mesh, &adjacency, &[], &options);
-    let occluders = Occluders::new(&mesh, &adjacency);
-    let params = VisibilityParams { step: 0.1, ..VisibilityParams::default() };
-    let drawing = Drawing::new(&occluders, &segments, &camera, &params);
-    let runs = drawing.layers[1].runs.iter();
-    let of_line = runs.filter(|run| run.points.iter().any(|p| (p.y - 250.0).abs() < 1e-6));
-    // The line is a side of a triangle, so its visible parts are one run around the others.
-    assert_eq!(of_line.map(|run| run.visible).collect::<Vec<_>>(), expected);
+    let edge = adjacency.edge_ids().find(|&e| adjacency.wing(e).ends() == [4, 5]).unwrap();
+    let options = LineOptions { boundary: class == LineClass::Boundary, crease_angle: None };
+    let contours = if class == LineClass::Contour { vec![edge] } else { vec![] };
+    let segments = Segments::new(&mesh, &adjacency, &contours, &options);
+    let drawing = Drawing::new(&Occluders::new(&mesh, &adjacency), &segments, &camera, params);
+    let mut found = Vec::new();
+    for run in drawing.layers.iter().flat_map(|layer| &layer.runs).filter(|run| run.visible) {
+        for (i, _) in run.edges.iter().enumerate().filter(|(_, e)| **e == edge) {
+            let ends = [run.points[i], run.points[(i + 1) % run.points.len()]];
+            let [a, b] = ends.map(|p| (p.x - 250.0) / 50.0);
+            found.push([a.min(b), a.max(b)]);
+        }
+    }
+    found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    found
+}
+
+#[track_caller]
+fn check_bar(half_width: f32, line: [f32; 2], expected: &[[f64; 2]]) {
+    let found = beside_bar(half_width, line, LineClass::Contour, &EXACT);
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((found - expected).abs() * 50.0 < 0.02, "{found} is not {expected}");
+    }
+}
+
+#[test]
+fn a_line_ends_where_a_bar_begins() {
+    check_bar(0.513, [-4.0, 4.0], &[[-4.0, -0.513], [0.513, 4.0]]);
+    check_bar(0.513, [-0.4, 4.0], &[[0.513, 4.0]]);
+    check_bar(0.513, [-0.4, 0.4], &[]);
+    check_bar(0.513, [0.6, 4.0], &[[0.6, 4.0]]);
+    // Hidden for a fifth of a pixel only, nearer to its end than the first sample.
+    check_bar(0.513, [0.509, 4.0], &[[0.513, 4.0]]);
+    check_bar(0.513, [-4.0, -0.509], &[[-4.0, -0.513]]);
 }
 
 #[test]
 fn a_hair_does_not_break_a_line() {
-    // 50 pixels a unit; where it crosses the line, the bar is 0.91 of 2 widths wide.
-    check_bar(0.006, &[true]);
-    check_bar(0.02, &[false, true]);
+    let params = VisibilityParams { step: 0.1, ..Default::default() };
+    for class in [LineClass::Contour, LineClass::Boundary] {
+        assert_eq!(beside_bar(0.007, [-4.0, 4.0], class, &params), [[-4.0, 4.0]]);
+        assert_eq!(beside_bar(0.008, [-4.0, 4.0], class, &params).len(), 2);
+    }
 }
 
 #[test]
