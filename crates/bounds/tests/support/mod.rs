@@ -5,7 +5,7 @@ use std::fmt;
 use drypoint_bounds::{DoubleCone, NormalCone, SpatializedNormalCone, Sphere};
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, is_contour, shapes};
 use glam::{DVec3, Vec3};
-use proptest::test_runner::{Config, RngSeed};
+use proptest::test_runner::{Config, RngSeed, TestCaseError};
 
 /// The same cases in every run, so that the table of mutants can be compared.
 pub(crate) fn cases(count: u32) -> Config {
@@ -58,23 +58,54 @@ impl fmt::Debug for Patch {
 const PATCH_SIZES: [usize; 5] = [1, 2, 6, 25, 80];
 
 impl Subject {
-    /// A mesh moved and scaled, with patches of all sizes spread evenly over its edges.
-    fn new(name: &'static str, mesh: &Mesh, scale: DVec3, offset: DVec3) -> Self {
-        let place = |p: &Vec3| (p.as_dvec3() * scale + offset).as_vec3();
-        let positions = mesh.positions().iter().map(place).collect();
-        let mesh = Mesh::new(positions, mesh.triangles().to_vec()).unwrap();
+    /// A mesh, and the patches that `choose` makes of its edges.
+    fn new(
+        name: &'static str,
+        mesh: Mesh,
+        choose: impl Fn(&Self, Vec<EdgeId>) -> Vec<Vec<EdgeId>>,
+    ) -> Self {
         let adjacency = MeshAdjacency::new(&mesh);
         let mut subject = Self { name, mesh, adjacency, patches: Vec::new() };
-        let edges: Vec<EdgeId> = subject
+        let edges = subject
             .adjacency
             .edges(EdgeFilter::All)
             .filter(|&edge| !subject.adjacency.is_beside_face_without_area(edge))
             .collect();
-        let seeds = edges.iter().step_by(edges.len() / 60).zip(PATCH_SIZES.into_iter().cycle());
-        subject.patches = seeds
-            .map(|(&seed, size)| subject.patch(nearest(&subject, &edges, seed, size)))
-            .collect();
+        let patches = choose(&subject, edges);
+        subject.patches = patches.into_iter().map(|edges| subject.patch(edges)).collect();
         subject
+    }
+
+    /// A mesh moved and scaled, with patches of all sizes spread evenly over its edges.
+    fn placed(name: &'static str, mesh: &Mesh, scale: DVec3, offset: DVec3) -> Self {
+        let place = |p: &Vec3| (p.as_dvec3() * scale + offset).as_vec3();
+        let positions = mesh.positions().iter().map(place).collect();
+        let mesh = Mesh::new(positions, mesh.triangles().to_vec()).unwrap();
+        Self::new(name, mesh, |subject, edges| {
+            let seeds = edges.iter().step_by(edges.len() / 60);
+            let sizes = PATCH_SIZES.into_iter().cycle();
+            seeds.zip(sizes).map(|(&seed, size)| nearest(subject, &edges, seed, size)).collect()
+        })
+    }
+
+    /// A ring of faces around +Z whose normals all make the angle `tilt` with it, as one patch. All
+    /// its planes touch the Reduced Sphere from the same side, and all normals are on the rim of the
+    /// cone, so that no bound made of these two could be smaller.
+    fn collar(name: &'static str, tilt: f64) -> Self {
+        const SIDES: u32 = 32;
+        let corner = |i: u32| {
+            // Not from 0: coordinates of 1e-17 would make the exact predicates slow.
+            let turn = std::f64::consts::TAU * (f64::from(i / 2) + 0.4) / f64::from(SIDES);
+            let (sin, cos) = turn.sin_cos();
+            let out = if i.is_multiple_of(2) { 0.8 } else { 1.2 };
+            DVec3::new(out * cos, out * sin, (1.0 - out) * tilt.tan()).as_vec3()
+        };
+        let next = |i: u32| i % (2 * SIDES);
+        let faces = (0..2 * SIDES)
+            .step_by(2)
+            .flat_map(|i| [[i, i + 1, next(i + 3)], [i, next(i + 3), next(i + 2)]]);
+        let mesh = Mesh::new((0..2 * SIDES).map(corner).collect(), faces.collect()).unwrap();
+        Self::new(name, mesh, |_, edges| vec![edges])
     }
 
     fn ends(&self, edge: EdgeId) -> [DVec3; 2] {
@@ -123,26 +154,18 @@ impl Subject {
             .any(|&e| is_contour(self.mesh.positions(), &self.adjacency.wing(e), viewpoint))
     }
 
-    /// Panics if a bound culls a patch that holds a contour edge.
-    #[track_caller]
-    pub(crate) fn check(&self, patch: &Patch, viewpoint: Viewpoint) {
-        let culled: Vec<String> = patch
-            .bounds
-            .iter()
-            .zip(&patch.double_cones)
-            .flat_map(|(bound, cone)| {
-                let wrong = [
-                    (!bound.may_hold_contour(viewpoint)).then(|| format!("{bound:?}")),
-                    (!cone.may_hold_contour(viewpoint)).then(|| format!("{cone:?}")),
-                ];
-                wrong.into_iter().flatten()
-            })
-            .collect();
+    /// Fails if a bound culls a patch that holds a contour edge.
+    pub(crate) fn check(&self, patch: &Patch, viewpoint: Viewpoint) -> Result<(), TestCaseError> {
+        let spatialized = patch.bounds.iter().filter(|bound| !bound.may_hold_contour(viewpoint));
+        let double = patch.double_cones.iter().filter(|cone| !cone.may_hold_contour(viewpoint));
+        let culled_by = (spatialized.collect::<Vec<_>>(), double.collect::<Vec<_>>());
         // The exact answer is the expensive one.
-        if !culled.is_empty() && self.holds_contour(patch, viewpoint) {
-            let (name, edges) = (self.name, patch.edges.len());
-            panic!("{name}, {edges} edges, from {viewpoint:?}: culled by\n{}", culled.join("\n"));
+        let is_culled = !culled_by.0.is_empty() || !culled_by.1.is_empty();
+        if is_culled && self.holds_contour(patch, viewpoint) {
+            let message = format!("{self:?} is culled from {viewpoint:?} by {culled_by:?}");
+            return Err(TestCaseError::fail(message));
         }
+        Ok(())
     }
 }
 
@@ -163,15 +186,18 @@ pub(crate) fn subjects() -> Vec<Subject> {
     let (bumpy, smooth) = (shapes::bumpy_sphere(5_000), shapes::icosphere(5_000));
     let (even, aside) = (DVec3::splat, DVec3::new(0.6, -0.7, 0.4));
     vec![
-        Subject::new("bumpy", &bumpy, even(1.0), DVec3::ZERO),
-        Subject::new("smooth", &smooth, even(1.0), DVec3::ZERO),
+        Subject::placed("bumpy", &bumpy, even(1.0), DVec3::ZERO),
+        Subject::placed("smooth", &smooth, even(1.0), DVec3::ZERO),
+        Subject::collar("flat collar", 0.1),
+        Subject::collar("collar", 0.7),
+        Subject::collar("steep collar", 1.3),
         // Normals as close together as f32 positions can have them.
-        Subject::new("flat", &bumpy, DVec3::new(1.0, 1e-4, 1.0), DVec3::ZERO),
-        Subject::new("far", &bumpy, even(1.0), 300.0 * aside),
-        Subject::new("very far", &bumpy, even(1.0), 1e5 * aside),
-        Subject::new("small", &bumpy, even(1e-9), DVec3::ZERO),
-        Subject::new("tiny", &bumpy, even(1e-20), 1e-19 * aside),
-        Subject::new("large", &bumpy, even(1e9), DVec3::ZERO),
-        Subject::new("huge", &bumpy, even(1e20), 1e21 * aside),
+        Subject::placed("flat", &bumpy, DVec3::new(1.0, 1e-4, 1.0), DVec3::ZERO),
+        Subject::placed("far", &bumpy, even(1.0), 300.0 * aside),
+        Subject::placed("very far", &bumpy, even(1.0), 1e5 * aside),
+        Subject::placed("small", &bumpy, even(1e-9), DVec3::ZERO),
+        Subject::placed("tiny", &bumpy, even(1e-20), 1e-19 * aside),
+        Subject::placed("large", &bumpy, even(1e9), DVec3::ZERO),
+        Subject::placed("huge", &bumpy, even(1e20), 1e21 * aside),
     ]
 }
