@@ -4,8 +4,8 @@
 //! so that files of quads give the triangles that everybody expects. So does one without area, and
 //! one that crosses itself. Others are cut by the crate `earcut`, chosen over `earcutr` because it
 //! keeps its own stack: a hostile polygon of many corners cannot overflow ours. Ear cutting drops
-//! corners that lie on a straight line; they are put back as triangles without area, because the
-//! face on the other side has them too, and edges that do not meet would be boundaries.
+//! corners that repeat and spikes; they are put back as triangles without area, so that every edge
+//! of the polygon meets the face on its other side.
 
 use earcut::Earcut;
 use glam::{DVec3, Vec3};
@@ -145,7 +145,7 @@ fn fill(corner_count: usize, triangles: &mut Vec<[usize; 3]>) -> Option<()> {
         }
         next[from] = to;
     }
-    // What is left are loops along straight lines.
+    // What is left are loops without area.
     for first in 0..corner_count {
         let mut corner = std::mem::replace(&mut next[first], usize::MAX);
         if corner == usize::MAX {
@@ -263,6 +263,19 @@ mod tests {
         let teeth = (0..60u8).map(|i| [f32::from(i), if i % 2 == 0 { 1.0 } else { 9.0 }]);
         let bottom = (0..60u8).rev().map(|i| [f32::from(i), 0.0]);
         check_covered(&teeth.chain(bottom).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn corners_that_repeat_and_spikes_are_kept() {
+        let l = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        for corner in 0..l.len() {
+            let mut repeated = l.to_vec();
+            repeated.insert(corner, l[corner]);
+            check_covered(&repeated);
+        }
+        let mut spiked = l.to_vec();
+        spiked.splice(3..4, [[1.0, 1.0], [0.5, 0.5], [1.0, 1.0]]);
+        check_covered(&spiked);
     }
 
     #[test]
