@@ -27,8 +27,11 @@
 //!
 //! Growing t by 8 u t / cos α pays for the first term. Growing α by 8 u makes the cone wider by
 //! 8 u |p| / cos² α there, which pays for the second at any α below 90°. Rounding the center moves
-//! it by √3 u times its largest coordinate at most, for which t grows by 8 u of that, over cos α. Multiplications and
-//! additions may be fused or taken in any order: that only takes roundings away.
+//! it by √3 u times its largest coordinate at most, for which t grows by 8 u of that, over cos α.
+//! Multiplications and additions may be fused or taken in any order: that only takes roundings away.
+//!
+//! Measured, on a million worst planes each (`ring_3_rim_of_the_double_cone`): 2 units lose some,
+//! 3 none.
 
 use bytemuck::{Pod, Zeroable};
 use drypoint_mesh::Viewpoint;

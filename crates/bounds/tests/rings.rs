@@ -1,7 +1,7 @@
 //! Four rings of tests around the one claim that counts: nothing that holds a contour edge is
 //! culled. Each aims closer to the edge of that claim than the one before, the last at its reverse.
 //! `docs/mutants.md` shows which ring notices which broken bound: viewpoints drawn at random do not
-//! see a radius a fifth too small.
+//! see a radius 3 % too small.
 
 mod support;
 
