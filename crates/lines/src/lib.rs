@@ -1,4 +1,69 @@
-//! docs
+//! From the edges of a mesh to a drawing: chains, hidden-line removal, SVG and PNG.
+//!
+//! ```
+//! use drypoint_lines::{
+//!     Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams, to_svg,
+//! };
+//! use drypoint_mesh::{EdgeFilter, MeshAdjacency, contour_edges, shapes};
+//! use glam::DVec3;
+//!
+//! let mesh = shapes::torus_knot(5000);
+//! let adjacency = MeshAdjacency::new(&mesh);
+//!
+//! // A page, and the nearest view from that direction that just fills it.
+//! let page = Page { width: 800, height: 600, margin: 20.0 };
+//! let points = mesh.positions().iter().map(|p| p.as_dvec3());
+//! let camera = Camera::fit_perspective(points, DVec3::ONE, None, 30.0, page)?;
+//!
+//! // Which edges to draw: the contours of this view, and sharp creases.
+//! let mut contours = Vec::new();
+//! contour_edges(&mesh, &adjacency, camera.viewpoint(), EdgeFilter::Convex, &mut contours);
+//! let options = LineOptions { boundary: true, crease_angle: Some(0.5) };
+//! let segments = Segments::new(&mesh, &adjacency, &contours, &options);
+//!
+//! // What of them is visible. The occluders serve any number of views.
+//! let occluders = Occluders::new(&mesh, &adjacency);
+//! let drawing = Drawing::new(&occluders, &segments, &camera, &VisibilityParams::default());
+//!
+//! let svg = to_svg(&drawing, &Style::default(), "torus knot");
+//! assert!(svg.contains(r#"<g class="contour""#));
+//! # Ok::<(), drypoint_lines::CameraError>(())
+//! ```
+//!
+//! Nothing is read, written or printed here: an SVG is a `String`, a PNG a `Vec<u8>`.
+//!
+//! # The steps
+//!
+//! 1. A [`Camera`] is a viewpoint with a lens and a [`Page`]. It is placed by hand, or fitted to
+//!    points exactly. Its [`Camera::viewpoint`] is what contours are extracted for.
+//! 2. [`Segments`] sorts edges by why they are drawn ([`LineClass`]), each once.
+//! 3. [`chain`] joins them into polylines at equal vertices.
+//! 4. [`Occluders`] finds what is in front of a point, [`Drawing`] walks every chain at steps of a
+//!    pixel and finds the ends of its visible [`Run`]s by bisection. All in f64, with exact
+//!    predicates where the surface is near: a line never hides behind its own faces, and there is
+//!    no offset to choose.
+//! 5. [`to_svg`] and [`to_png`] ink the runs in a [`Style`].
+//!
+//! The same input gives the same output, to the byte.
+//!
+//! # Which contours to pass
+//!
+//! On a closed, consistently wound mesh concave contour edges are always hidden, and
+//! [`EdgeFilter::Convex`] saves them. Where a surface is also seen from behind, because it is open
+//! or its faces disagree, what is concave from the front is convex from behind: pass the contours
+//! of [`EdgeFilter::All`] there, or lines go missing. Hidden ones cost time only, unless hidden
+//! lines are drawn.
+//!
+//! # Features
+//!
+//! All are on by default. Without `visibility` there is [`Drawing::through_glass`].
+//!
+//! - `visibility`: [`Occluders`], [`Drawing::new`] (crates `obvhs` and `robust`).
+//! - `svg`: [`to_svg`] (crate `svg`).
+//! - `png`: [`to_png`] (crate `tiny-skia`).
+//!
+//! [`EdgeFilter::Convex`]: drypoint_mesh::EdgeFilter::Convex
+//! [`EdgeFilter::All`]: drypoint_mesh::EdgeFilter::All
 
 mod camera;
 mod camera_error;

@@ -31,7 +31,7 @@ pub struct VisibilityParams {
 
 impl Default for VisibilityParams {
     fn default() -> Self {
-        Self { step: 1.0, precision: 0.02, close_gaps: 0.75, drop_specks: 6.0 }
+        Self { step: 1.0, precision: 0.005, close_gaps: 0.75, drop_specks: 6.0 }
     }
 }
 
