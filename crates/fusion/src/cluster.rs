@@ -189,3 +189,127 @@ pub(crate) fn acceptance<T: Number>(cos: T, radius: T, distance: T) -> T {
     let sum = sin_beta.if_less(zero, one, sum);
     zero.if_less(cos, sum, one)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::{MeanExtent, ReducedExtent};
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
+    }
+
+    /// Edges of a patch: normals around a direction, ends around a place; some share vertices.
+    fn patch() -> impl Strategy<Value = Vec<EdgeShape>> {
+        let edge = (vector(), vector(), vector(), 0..8u32, 100..u32::MAX);
+        let spread = -6.0..0.5f64;
+        (proptest::collection::vec(edge, 1..12), vector(), vector(), spread.clone(), spread)
+            .prop_map(|(edges, normal, place, wide, large)| {
+                let (wide, large) = (10f64.powf(wide), 10f64.powf(large));
+                let unit = |n: DVec3| n.try_normalize().unwrap_or(DVec3::Z);
+                let shape = |(m, n, p, vertex, other): (DVec3, DVec3, DVec3, u32, u32)| {
+                    // A vertex has one place, whichever edge it belongs to.
+                    let shared = DVec3::new(f64::from(vertex) / 8.0, 0.5, 0.0);
+                    let free = place + large * p;
+                    EdgeShape {
+                        normals: [m, n].map(|n| unit(normal + wide * n)),
+                        vertices: [vertex, other],
+                        ends: [shared, free],
+                        direction: unit(free - shared),
+                    }
+                };
+                edges.into_iter().map(shape).collect()
+            })
+    }
+
+    fn cluster<E: Extent>(edges: &[EdgeShape], model: &CostModel) -> Cluster<E> {
+        let single = |(i, edge): (u32, &EdgeShape)| Cluster::<E>::of_edge(i, edge, model);
+        (0..).zip(edges).map(single).reduce(|a, b| Cluster::fused(&a, &b, model)).unwrap()
+    }
+
+    /// E by its definition, with angles.
+    fn expected_cost(edges: &[EdgeShape], is_reduced: bool, model: &CostModel) -> f64 {
+        let normals: Vec<DVec3> = edges.iter().flat_map(|e| e.normals).collect();
+        let axis = normals.iter().sum::<DVec3>().normalize();
+        let alpha = normals.iter().map(|n| n.cross(axis).length().atan2(n.dot(axis)));
+        let alpha = alpha.fold(0.0, f64::max);
+        let radius = if is_reduced {
+            let middle = |e: &EdgeShape| 0.5 * (e.ends[0] + e.ends[1]);
+            let center = edges.iter().map(middle).sum::<DVec3>() / edges.len() as f64;
+            edges
+                .iter()
+                .map(|e| (center - e.ends[1]).cross(e.direction).length())
+                .fold(0.0, f64::max)
+        } else {
+            let ends = edges.iter().flat_map(|e| e.vertices.into_iter().zip(e.ends));
+            let mut vertices: Vec<(u32, DVec3)> = ends.collect();
+            vertices.sort_by_key(|&(vertex, _)| vertex);
+            vertices.dedup_by_key(|&mut (vertex, _)| vertex);
+            let center = vertices.iter().map(|&(_, p)| p).sum::<DVec3>() / vertices.len() as f64;
+            vertices.iter().map(|&(_, p)| p.distance(center)).fold(0.0, f64::max)
+        };
+        let angle = alpha + (radius / model.view_distance).asin();
+        let is_wide = radius >= model.view_distance || angle >= std::f64::consts::FRAC_PI_2;
+        let acceptance = if is_wide { 1.0 } else { angle.sin() };
+        model.patch_test + acceptance * edges.len() as f64
+    }
+
+    fn check_pair<E: Extent>(a: &[EdgeShape], b: &[EdgeShape], is_reduced: bool, distance: f64) {
+        let model = CostModel { view_distance: distance, ..CostModel::PAPER };
+        let (first, second) = (cluster::<E>(a, &model), cluster::<E>(b, &model));
+        let gain = Cluster::gain(&first, &second, &model, f64::NEG_INFINITY);
+        let reversed = Cluster::gain(&second, &first, &model, f64::NEG_INFINITY);
+        assert_eq!(gain.to_bits(), reversed.to_bits());
+
+        let cost = |edges: &[EdgeShape]| expected_cost(edges, is_reduced, &model);
+        let expected = cost(a) + cost(b) - cost(&[a, b].concat());
+        assert!((gain - expected).abs() <= 1e-5, "{gain} is not {expected}");
+
+        for least in [0.0, gain - 1e-3, gain, gain + 1e-3] {
+            let answer = Cluster::gain(&first, &second, &model, least);
+            let is_right = if gain >= least { answer == gain } else { answer < least };
+            assert!(is_right, "{answer} for {gain}, asked for {least}");
+        }
+        let [a_row, b_row] = [&first, &second].map(|c| c.outline().map(Lanes::of));
+        let most = most_gain::<E>(&a_row, &b_row, &model).0[0];
+        assert!(most >= gain, "{most} is below {gain}");
+        if a.len() == 1 && b.len() == 1 && is_reduced {
+            assert!(most <= gain + 1e-5, "single edges are known exactly: {most}, {gain}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn gains_are_right_and_bounded(a in patch(), b in patch(), distance in 1.0..20.0f64) {
+            check_pair::<ReducedExtent>(&a, &b, true, distance);
+            check_pair::<MeanExtent>(&a, &b, false, distance);
+            check_pair::<ReducedExtent>(&a[..1], &b[..1], true, distance);
+        }
+    }
+
+    #[test]
+    fn acceptance_is_a_sine_up_to_a_right_angle() {
+        let check = |cos: f64, radius: f64, distance: f64, expected: f64| {
+            assert!((acceptance(cos, radius, distance) - expected).abs() < 1e-12);
+            assert!(
+                (acceptance(Lanes::of(cos), Lanes::of(radius), Lanes::of(distance)).0[1]
+                    - expected)
+                    .abs()
+                    < 1e-12
+            );
+        };
+        let cos = |degrees: f64| degrees.to_radians().cos();
+        check(cos(0.0), 0.0, 10.0, 0.0);
+        check(cos(30.0), 0.0, 10.0, 0.5);
+        check(cos(30.0), 5.0, 10.0, 60f64.to_radians().sin());
+        check(cos(59.9), 5.0, 10.0, 89.9f64.to_radians().sin());
+        check(cos(60.1), 5.0, 10.0, 1.0);
+        check(cos(95.0), 0.0, 10.0, 1.0);
+        for nonsense in [0.0, -1.0, f64::NAN] {
+            check(cos(30.0), 5.0, nonsense, 1.0);
+            check(nonsense, 5.0, 10.0, 1.0);
+        }
+        check(cos(0.0), 10.0, 10.0, 1.0);
+    }
+}

@@ -271,3 +271,81 @@ impl Clock<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::{MeanExtent, ReducedExtent};
+    use crate::geometry::Frame;
+    use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, shapes};
+
+    fn shapes_of_edges(mesh: &Mesh) -> Vec<EdgeShape> {
+        let adjacency = MeshAdjacency::new(mesh);
+        let frame = Frame::new(mesh, &adjacency).unwrap();
+        let edges: Vec<EdgeId> = adjacency.edges(EdgeFilter::All).collect();
+        edges.iter().filter_map(|&edge| frame.shape(edge)).collect()
+    }
+
+    /// Algorithm 1 without memory and without a quick look: each pair is compared exactly, and at
+    /// every step the best of all is fused.
+    fn fuse_plainly<E: Extent>(edges: &[EdgeShape], model: &CostModel) -> Vec<Cluster<E>> {
+        let mut clusters: Vec<Option<Cluster<E>>> = Vec::new();
+        let mut pairs: Vec<Pair> = Vec::new();
+        let add = |cluster: Cluster<E>, clusters: &mut Vec<Option<_>>, pairs: &mut Vec<Pair>| {
+            let number = u32::try_from(clusters.len()).unwrap();
+            for (other, live) in (0..).zip(&*clusters) {
+                if let Some(live) = live {
+                    let gain = Cluster::gain(live, &cluster, model, f64::NEG_INFINITY);
+                    pairs.push(Pair { gain, clusters: [other, number] });
+                }
+            }
+            clusters.push(Some(cluster));
+        };
+        for (number, edge) in (0..).zip(edges) {
+            add(Cluster::of_edge(number, edge, model), &mut clusters, &mut pairs);
+        }
+        while let Some(best) = pairs.iter().filter(|pair| pair.gain > 0.0).max().copied() {
+            let [a, b] = best.clusters.map(|number| clusters[number as usize].take().unwrap());
+            pairs.retain(|pair| !pair.clusters.iter().any(|n| best.clusters.contains(n)));
+            add(Cluster::fused(&a, &b, model), &mut clusters, &mut pairs);
+        }
+        clusters.into_iter().flatten().collect()
+    }
+
+    #[track_caller]
+    fn check<E: Extent>(mesh: &Mesh, model: CostModel, cache_size: usize) {
+        let mut edges = shapes_of_edges(mesh);
+        edges.truncate(200);
+        let settings = Settings { model, cache_size };
+        let fast = fuse_greedily::<E>(&edges, settings, &|_| Ok(())).unwrap();
+        let plain = fuse_plainly::<E>(&edges, &model);
+        let lists = |clusters: &[Cluster<E>]| -> Vec<(Vec<u32>, f64)> {
+            clusters.iter().map(|cluster| (cluster.edges.clone(), cluster.cost)).collect()
+        };
+        assert_eq!(lists(&fast), lists(&plain));
+        assert!(fast.len() < edges.len() / 2, "{} of {}", fast.len(), edges.len());
+    }
+
+    #[test]
+    fn shortcuts_change_nothing() {
+        for name in ["bumpy-sphere", "torus-knot", "cad-part", "sliver-sphere", "book"] {
+            let mesh = shapes::by_name(name, 90).unwrap();
+            check::<ReducedExtent>(&mesh, CostModel::PAPER, 50);
+            check::<MeanExtent>(&mesh, CostModel::PAPER, 50);
+            check::<ReducedExtent>(&mesh, CostModel::PAPER, 1);
+            let near = CostModel { patch_test: 3.0, view_distance: 1.5 };
+            check::<ReducedExtent>(&mesh, near, 4);
+            check::<MeanExtent>(&mesh, near, 4);
+        }
+    }
+
+    /// Of equal gains the pair of lowest numbers goes first.
+    #[test]
+    fn pairs_have_a_strict_order() {
+        let pair = |gain, clusters| Pair { gain, clusters };
+        let mut pairs =
+            [pair(1.0, [0, 3]), pair(2.0, [1, 2]), pair(1.0, [0, 2]), pair(2.0, [0, 9])];
+        pairs.sort_unstable_by(|a, b| b.cmp(a));
+        assert_eq!(pairs.map(|pair| pair.clusters), [[0, 9], [1, 2], [0, 2], [0, 3]]);
+    }
+}
