@@ -1,8 +1,8 @@
 //! `cargo xtask validate --mutants`: do the tests notice a broken bound?
 //!
 //! Each mutant is one textual replacement in a copy of the workspace; the tests of its suite run
-//! there, and the table of who noticed what must be the one in `docs/mutants.md`. `--bless` writes
-//! that file instead.
+//! there, and the tables of who noticed what must be those in `docs/mutants.md`. `--bless` writes
+//! that file instead. Another crate joins in with a suite of its own in [`SUITES`].
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -14,18 +14,20 @@ use crate::shell;
 /// Where the expected table is kept, from the root.
 const TABLE: &str = "docs/mutants.md";
 
-/// Tests that a mutant is put before.
+/// The tests of a package, and what they are put before.
 struct Suite {
     package: &'static str,
+    /// Which tests the columns stand for: a sentence above the table.
+    about: &'static str,
     /// Columns of the table: heading, and what the names of the tests in it start with. What starts
     /// with none of them is a unit test, and counted in a last column.
     rings: &'static [(&'static str, &'static str)],
+    mutants: &'static [Mutant],
 }
 
 /// One way to break the code.
 struct Mutant {
     name: &'static str,
-    suite: &'static Suite,
     /// From the root.
     file: &'static str,
     /// Must occur exactly once in the file.
@@ -33,136 +35,138 @@ struct Mutant {
     replace: &'static str,
 }
 
-const BOUNDS: Suite = Suite {
+const SUITES: &[Suite] = &[Suite {
     package: "drypoint-bounds",
+    about: "The rings are those of `crates/bounds/tests/rings.rs`.",
     rings: &[
         ("1 anything", "ring_1_"),
         ("2 grazing", "ring_2_"),
         ("3 rim", "ring_3_"),
         ("4 not vacuous", "ring_4_"),
     ],
-};
+    mutants: BOUNDS,
+}];
 
 const CONE: &str = "crates/bounds/src/cone.rs";
 const SPHERE: &str = "crates/bounds/src/sphere.rs";
 const SPATIALIZED: &str = "crates/bounds/src/spatialized.rs";
 const DOUBLE: &str = "crates/bounds/src/double_cone.rs";
 
-const fn bounds(
+const fn mutant(
     name: &'static str,
     file: &'static str,
     find: &'static str,
     replace: &'static str,
 ) -> Mutant {
-    Mutant { name, suite: &BOUNDS, file, find, replace }
+    Mutant { name, file, find, replace }
 }
 
-const MUTANTS: &[Mutant] = &[
-    bounds(
+const BOUNDS: &[Mutant] = &[
+    mutant(
         "`SpatializedNormalCone`: radius × 0.97",
         SPATIALIZED,
         "viewpoint.w() * self.sphere.radius",
         "viewpoint.w() * 0.97 * self.sphere.radius",
     ),
-    bounds(
+    mutant(
         "`SpatializedNormalCone`: radius × 0.8",
         SPATIALIZED,
         "viewpoint.w() * self.sphere.radius",
         "viewpoint.w() * 0.8 * self.sphere.radius",
     ),
-    bounds(
+    mutant(
         "`SpatializedNormalCone`: radius × 0.5",
         SPATIALIZED,
         "viewpoint.w() * self.sphere.radius",
         "viewpoint.w() * 0.5 * self.sphere.radius",
     ),
-    bounds(
+    mutant(
         "`SpatializedNormalCone`: sin × 0.97",
         SPATIALIZED,
         "height > sin * tangent",
         "height > 0.97 * sin * tangent",
     ),
-    bounds(
+    mutant(
         "`SpatializedNormalCone`: lost `abs`",
         SPATIALIZED,
         "axis.dot(to_viewpoint).abs()",
         "axis.dot(to_viewpoint)",
     ),
-    bounds(
+    mutant(
         "`SpatializedNormalCone`: `return true`",
         SPATIALIZED,
         "!is_culled",
         "is_culled || true",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: radius × 0.97",
         DOUBLE,
         "sphere.radius / half_angle.cos()",
         "0.97 * sphere.radius / half_angle.cos()",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: radius × 0.8",
         DOUBLE,
         "sphere.radius / half_angle.cos()",
         "0.8 * sphere.radius / half_angle.cos()",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: radius × 0.5",
         DOUBLE,
         "sphere.radius / half_angle.cos()",
         "0.5 * sphere.radius / half_angle.cos()",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: sin × 0.97",
         DOUBLE,
         "cone.half_angle() + tilt",
         "(0.97 * cone.sin).atan2(cone.cos) + tilt",
     ),
-    bounds("`DoubleCone`: lost `abs`", DOUBLE, "height.abs()", "height"),
-    bounds("`DoubleCone`: `return true`", DOUBLE, "!is_culled", "is_culled || true"),
-    bounds(
+    mutant("`DoubleCone`: lost `abs`", DOUBLE, "height.abs()", "height"),
+    mutant("`DoubleCone`: `return true`", DOUBLE, "!is_culled", "is_culled || true"),
+    mutant(
         "`DoubleCone`: no inflation",
         DOUBLE,
         "pub const SLACK: f64 = 8.0",
         "pub const SLACK: f64 = 0.0",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: \\|w\\|² − h² for \\|p\\|²",
         DOUBLE,
         "across.length_squared()",
         "(to_viewpoint.length_squared() - height * height)",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: squares below 2⁻¹²⁶ trusted",
         DOUBLE,
         "MIN_CLEARANCE: f32 = 1.0",
         "MIN_CLEARANCE: f32 = 0.0",
     ),
-    bounds(
+    mutant(
         "`DoubleCone`: t not dropped in orthographic views",
         DOUBLE,
         "height.abs() - w * self.apex_distance",
         "height.abs() - w.max(1.0) * self.apex_distance",
     ),
-    bounds(
+    mutant(
         "`NormalCone`: sine by √(1 − cos²)",
         CONE,
         "normal.cross(axis).length_squared()",
         "1.0 - normal_cos * normal_cos",
     ),
-    bounds(
+    mutant(
         "`NormalCone::minimal`: a support too few",
         "crates/bounds/src/cap.rs",
         "            consider(a + b, &[a, b]);",
         "            consider(a, &[a, b]);",
     ),
-    bounds(
+    mutant(
         "`Sphere::reduced`: radius × 0.97",
         SPHERE,
         "radius: largest(edges",
         "radius: 0.97 * largest(edges",
     ),
-    bounds(
+    mutant(
         "`Sphere::mean`: radius × 0.97",
         SPHERE,
         "radius: largest(points",
@@ -187,27 +191,36 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     }
     let root = shell::root();
     let workspace = Copy::new(&root)?;
-    workspace.check_unbroken(&BOUNDS)?;
-    let mut rows = Vec::new();
-    for (index, mutant) in MUTANTS.iter().enumerate() {
-        eprintln!("mutant {} of {}: {}", index + 1, MUTANTS.len(), mutant.name);
-        let caught = workspace.caught_by(mutant)?;
-        if !caught.contains(&true) {
-            return Err(format!("no test notices the mutant {}", mutant.name));
+    let mut page = INTRODUCTION.to_owned();
+    for suite in SUITES {
+        workspace.check_unbroken(suite)?;
+        let mut rows = Vec::new();
+        for (index, mutant) in suite.mutants.iter().enumerate() {
+            eprintln!(
+                "{} {} of {}: {}",
+                suite.package,
+                index + 1,
+                suite.mutants.len(),
+                mutant.name
+            );
+            let caught = workspace.caught_by(suite, mutant)?;
+            if !caught.contains(&true) {
+                return Err(format!("no test notices the mutant {}", mutant.name));
+            }
+            rows.push((mutant.name, caught));
         }
-        rows.push((mutant.name, caught));
+        page += &section(suite, &rows);
     }
-    let table = page(&rows, &BOUNDS);
-    print!("{table}");
-    compare(&root.join(TABLE), &table, bless)
+    print!("{page}");
+    compare(&root.join(TABLE), &page, bless)
 }
 
-fn compare(path: &Path, table: &str, bless: bool) -> Result<(), String> {
+fn compare(path: &Path, page: &str, bless: bool) -> Result<(), String> {
     if bless {
-        return fs::write(path, table).map_err(|e| format!("cannot write {}: {e}", path.display()));
+        return fs::write(path, page).map_err(|e| format!("cannot write {}: {e}", path.display()));
     }
     let expected = fs::read_to_string(path).unwrap_or_default();
-    let changes = changed_lines(&expected, table);
+    let changes = changed_lines(&expected, page);
     if changes.is_empty() {
         return Ok(());
     }
@@ -251,16 +264,16 @@ impl Copy {
     }
 
     /// For each column of its suite whether it notices the mutant.
-    fn caught_by(&self, mutant: &Mutant) -> Result<Vec<bool>, String> {
+    fn caught_by(&self, suite: &Suite, mutant: &Mutant) -> Result<Vec<bool>, String> {
         let path = self.root.join(mutant.file);
         let error = |e: std::io::Error| format!("{}: {e}", mutant.file);
         let sound = fs::read_to_string(&path).map_err(error)?;
         let broken = mutant.apply(&sound)?;
         fs::write(&path, broken).map_err(error)?;
-        let failed = self.failed_tests(mutant.suite);
+        let failed = self.failed_tests(suite);
         fs::write(&path, sound).map_err(error)?;
         let failed = failed.map_err(|e| format!("mutant {}: {e}", mutant.name))?;
-        Ok(columns(mutant.suite, &failed))
+        Ok(columns(suite, &failed))
     }
 
     /// The names of the tests that fail.
@@ -321,16 +334,20 @@ fn columns(suite: &Suite, failed: &[String]) -> Vec<bool> {
     rings.chain([others]).collect()
 }
 
-/// The whole of [`TABLE`].
-fn page(rows: &[(&str, Vec<bool>)], suite: &Suite) -> String {
-    let mut page = format!(
-        "# Who notices a broken bound\n\n\
-         Each row breaks `{}` by one replacement in its source (`xtask/src/mutants.rs`) and runs its\n\
-         tests: the rings of `crates/bounds/tests/rings.rs`, and the unit tests beside the code. A ring that\n\
-         misses a mutant cannot be relied on to find that mistake. `cargo xtask validate --mutants` compares\n\
-         this page with what it finds, `--mutants --bless` rewrites it.\n\n| Mutant |",
-        suite.package
-    );
+/// How [`TABLE`] begins.
+const INTRODUCTION: &str = "\
+# Who notices a broken bound
+
+Each row breaks a package by one replacement in its source (`xtask/src/mutants.rs`) and runs its
+tests: rings of tests that aim closer and closer to the edge of what the code claims, and the unit
+tests beside the code. A ring that misses a mutant cannot be relied on to find that mistake.
+`cargo xtask validate --mutants` compares this page with what it finds, `--mutants --bless` rewrites
+it.
+";
+
+/// The table of one suite.
+fn section(suite: &Suite, rows: &[(&str, Vec<bool>)]) -> String {
+    let mut page = format!("\n## {}\n\n{}\n\n| Mutant |", suite.package, suite.about);
     let headings = suite.rings.iter().map(|&(heading, _)| heading).chain(["unit tests"]);
     headings.for_each(|heading| write!(page, " {heading} |").unwrap_or_default());
     page += "\n|---|";
@@ -385,7 +402,7 @@ mod tests {
 
     #[test]
     fn every_replacement_has_its_place() {
-        for mutant in MUTANTS {
+        for mutant in SUITES.iter().flat_map(|suite| suite.mutants) {
             let source = fs::read_to_string(shell::root().join(mutant.file)).unwrap();
             let broken = mutant.apply(&source).unwrap();
             assert_ne!(source, broken, "{}", mutant.name);
@@ -394,7 +411,7 @@ mod tests {
 
     #[test]
     fn a_replacement_without_its_place_is_an_error() {
-        let mutant = bounds("m", CONE, "sin", "cos");
+        let mutant = mutant("m", CONE, "sin", "cos");
         assert_eq!(mutant.apply("a sin b"), Ok("a cos b".to_owned()));
         assert!(mutant.apply("nothing").unwrap_err().contains("0 times"));
         assert!(mutant.apply("sin and sin").unwrap_err().contains("2 times"));
@@ -406,13 +423,13 @@ mod tests {
                       test cone::tests::y ... FAILED\n\nfailures:\n    ring_2_x\n";
         let failed = failed_tests(report);
         assert_eq!(failed, ["ring_2_x", "cone::tests::y"]);
-        assert_eq!(columns(&BOUNDS, &failed), [false, true, false, false, true]);
-        assert_eq!(columns(&BOUNDS, &[]), [false; 5]);
+        assert_eq!(columns(&SUITES[0], &failed), [false, true, false, false, true]);
+        assert_eq!(columns(&SUITES[0], &[]), [false; 5]);
     }
 
     #[test]
     fn the_page_is_a_table() {
-        let page = page(&[("m", vec![true, false, false, false, true])], &BOUNDS);
+        let page = section(&SUITES[0], &[("m", vec![true, false, false, false, true])]);
         assert!(page.ends_with("\n| m | **caught** | missed | missed | missed | **caught** |\n"));
         assert_eq!(changed_lines(&page, &page), "");
         assert_eq!(changed_lines("a\nb\n", "a\nc\n"), "- b\n+ c\n");
