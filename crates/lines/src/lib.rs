@@ -1,6 +1,7 @@
 //! From the edges of a mesh to a drawing: chains, hidden-line removal, SVG and PNG.
 //!
-//! ```
+#![cfg_attr(all(feature = "visibility", feature = "svg"), doc = "```")]
+#![cfg_attr(not(all(feature = "visibility", feature = "svg")), doc = "```ignore")]
 //! use drypoint_lines::{
 //!     Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams, to_svg,
 //! };
@@ -48,11 +49,10 @@
 //!
 //! # Which contours to pass
 //!
-//! On a closed, consistently wound mesh concave contour edges are always hidden, and
-//! [`EdgeFilter::Convex`] saves them. Where a surface is also seen from behind, because it is open
-//! or its faces disagree, what is concave from the front is convex from behind: pass the contours
-//! of [`EdgeFilter::All`] there, or lines go missing. Hidden ones cost time only, unless hidden
-//! lines are drawn.
+//! Concave contour edges of a closed mesh are always hidden, and [`EdgeFilter::Convex`] saves them.
+//! Where a surface is seen from behind, because it is open, inside out, or its faces disagree, what
+//! is concave from the front is convex from behind: pass the contours of [`EdgeFilter::All`] there,
+//! or lines go missing. It finds the same visible lines elsewhere, and its lines of sight cost a third more.
 //!
 //! # Features
 //!
