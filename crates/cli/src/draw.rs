@@ -83,8 +83,9 @@ fn trace(
 ) -> Drawing {
     let mesh = source.mesh();
     let mut contours = Vec::new();
-    // Wanted or not: what is a contour in this view is not a crease.
-    contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::Convex, &mut contours);
+    // Concave ones too: where a surface is open, inside out or seen from within, they can be seen.
+    // And wanted or not: what is a contour in this view is not a crease.
+    contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::All, &mut contours);
     let segments = Segments::new(mesh, adjacency, &contours, options);
     let occluders = {
         let _stage = Stage::new("sorting faces");
