@@ -47,7 +47,13 @@ fn dispatch(arguments: &[String]) -> Result<(), String> {
         print!("{HELP}");
         return Ok(());
     };
+    // `validate` and `bench` hand their arguments on, and have a help of their own.
+    let asks_help = rest.first().is_some_and(|first| first == "--help" || first == "-h");
     match command.as_str() {
+        "test" | "tidy" | "ci" if asks_help => {
+            print!("{HELP}");
+            Ok(())
+        }
         "test" => test::run(rest),
         "tidy" => no_arguments(command, rest).and_then(|()| tidy::run()),
         "validate" => validate::run(rest),
@@ -83,6 +89,7 @@ mod tests {
     fn help_is_no_error() {
         check(&[], None);
         check(&["--help"], None);
+        check(&["test", "--help"], None);
     }
 
     #[test]
