@@ -102,10 +102,9 @@ pub(crate) struct ViewArgs {
     /// Size of the page in pixels
     #[arg(long, value_name = "WxH", default_value = "1000x1000", value_parser = size)]
     pub(crate) size: [u32; 2],
-    /// Free border around a model that fills the page, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 40.0, value_parser = number)]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) margin: f64,
+    /// Free border around a model that fills the page, in pixels [default: 4 % of the shorter side]
+    #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) margin: Option<f64>,
 }
 
 #[derive(Debug, Args)]

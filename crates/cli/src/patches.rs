@@ -79,10 +79,9 @@ pub(crate) fn build(
         max_partition: args.partition.0,
         ..FusionParams::PAPER
     };
-    const STEPS: u64 = 1000;
-    let stage = Stage::with_length("building patches", STEPS);
+    let stage = Stage::with_length("building patches", adjacency.edges(filter).count() as u64);
     let progress = |progress: Progress| {
-        stage.set((progress.fraction() * STEPS as f64) as u64);
+        stage.set(progress.edges_done as u64);
         ControlFlow::Continue(())
     };
     fuse(source.mesh(), adjacency, filter, &params, &progress)

@@ -11,27 +11,23 @@ const NEARLY_VERTICAL: f64 = 1e-6;
 
 /// The camera that the options ask for.
 pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
+    if let Some(distance) = args.distance.filter(|&distance| distance <= 0.0) {
+        return Err(format!("--distance: {distance} is not above 0"));
+    }
     let [width, height] = args.size;
-    let page = Page { width, height, margin: args.margin };
-    build(args, mesh, page)
-        .map_err(|error| {
-            let option = match error {
-                CameraError::EyeAtTarget { .. } => "--eye",
-                CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
-                CameraError::FieldOfView { .. } => "--fov",
-                CameraError::Height { .. } => "--height",
-                CameraError::Page { .. } => "--size",
-                CameraError::Margin { .. } => "--margin",
-                CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
-            };
-            format!("{option}: {error}")
-        })
-        .and_then(|camera| match args.distance {
-            Some(distance) if distance <= 0.0 => {
-                Err(format!("--distance: {distance} is not above 0"))
-            }
-            _ => Ok(camera),
-        })
+    let margin = args.margin.unwrap_or(0.04 * f64::from(width.min(height)));
+    build(args, mesh, Page { width, height, margin }).map_err(|error| {
+        let option = match error {
+            CameraError::EyeAtTarget { .. } => "--eye",
+            CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
+            CameraError::FieldOfView { .. } => "--fov",
+            CameraError::Height { .. } => "--height",
+            CameraError::Page { .. } => "--size",
+            CameraError::Margin { .. } => "--margin",
+            CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
+        };
+        format!("{option}: {error}")
+    })
 }
 
 fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError> {
