@@ -18,7 +18,7 @@ use crate::{
 /// Algorithm 1).
 ///
 /// On all threads of the current rayon pool; the result is the same for any number of them. With
-/// [`FusionParams::PAPER`], some 140 µs of processor time for each edge; it grows with
+/// [`FusionParams::PAPER`], some 80 µs of processor time for each edge; it grows with
 /// `max_partition`.
 ///
 /// `progress` is called every few milliseconds from any of the threads, so that two calls may come

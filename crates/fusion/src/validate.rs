@@ -203,3 +203,89 @@ impl PatchSet {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FusionParams, fuse};
+    use drypoint_mesh::{EdgeClass, EdgeFilter, shapes};
+    use glam::Vec3;
+    use std::ops::ControlFlow;
+
+    /// Breaks a good asset and sees what [`PatchSet::validate`] says.
+    #[track_caller]
+    fn check(break_it: impl Fn(&mut PatchSet), is_expected: impl Fn(InvalidPatches) -> bool) {
+        let mesh = shapes::bumpy_sphere(1_000);
+        let adjacency = MeshAdjacency::new(&mesh);
+        let go_on = |_| ControlFlow::Continue(());
+        let params = FusionParams::PAPER;
+        let mut set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on).unwrap();
+        assert_eq!((set.validate(), set.validate_against(&mesh, &adjacency)), (Ok(()), Ok(())));
+        assert!(set.patches.len() > 4);
+        break_it(&mut set);
+        let error = set.validate().and_then(|()| set.validate_against(&mesh, &adjacency));
+        assert!(error.is_err_and(&is_expected), "{error:?}");
+    }
+
+    #[test]
+    fn broken_lists_are_noticed() {
+        let is_length = |e| matches!(e, InvalidPatches::Lengths { .. });
+        check(|set| set.classes.truncate(9), is_length);
+        check(|set| set.wings.truncate(9), is_length);
+        check(
+            |set| set.edge_ids[3] = set.edge_ids[900],
+            |e| matches!(e, InvalidPatches::DuplicateEdge { .. }),
+        );
+        let is_range = |e| matches!(e, InvalidPatches::Range { patch: 2, .. });
+        check(|set| set.patches[2].first_edge += 1, is_range);
+        check(|set| set.patches[2].edge_count = 0, is_range);
+        check(|set| set.patches[2].edge_count = u32::MAX, is_range);
+        check(|set| set.patches.swap(2, 3), is_range);
+    }
+
+    #[test]
+    fn broken_numbers_are_noticed() {
+        check(
+            |set| set.wings[7].right = drypoint_mesh::Wing::NONE,
+            |e| matches!(e, InvalidPatches::VertexOutOfRange { place: 7, .. }),
+        );
+        check(
+            |set| set.positions[5].y = f32::NAN,
+            |e| e == InvalidPatches::PositionNotFinite { vertex: 5 },
+        );
+        let is_bound = |e| e == InvalidPatches::BoundNotFinite { patch: 1 };
+        check(|set| set.patches[1].bound.center.x = f32::INFINITY, is_bound);
+        check(|set| set.patches[1].bound.axis.x = f32::NAN, is_bound);
+        check(|set| set.patches[1].bound.tan_squared = -1.0, is_bound);
+        check(|set| set.patches[1].bound.apex_distance = f32::NAN, is_bound);
+    }
+
+    #[test]
+    fn bounds_too_small_are_noticed() {
+        let is_outside = |e| matches!(e, InvalidPatches::PlaneOutsideBound { patch: 3, .. });
+        check(|set| set.patches[3].bound.tan_squared *= 0.99, is_outside);
+        check(|set| set.patches[3].bound.apex_distance = 0.0, is_outside);
+        check(|set| set.patches[3].bound.axis *= -1.0, is_outside);
+        check(|set| set.patches[3].bound.axis = Vec3::ZERO, is_outside);
+        check(|set| set.patches[3].bound.center += Vec3::ONE, is_outside);
+    }
+
+    #[test]
+    fn differences_from_the_mesh_are_noticed() {
+        let is_different = |e| matches!(e, InvalidPatches::EdgeDiffers { .. });
+        check(|set| set.edge_ids[3].0 = 1_000_000, is_different);
+        check(|set| set.classes[3] = EdgeClass::NonManifold, is_different);
+        check(|set| set.provenance.filter = EdgeFilter::All, is_different);
+        check(|set| set.provenance.mesh_hash ^= 1, |e| e == InvalidPatches::AnotherMesh);
+        let drop_last = |set: &mut PatchSet| {
+            assert!(set.always_tested().is_empty() || set.always_tested().len() < 20);
+            let last = set.wings.len() - 1;
+            set.wings.truncate(last);
+            set.edge_ids.truncate(last);
+            set.classes.truncate(last);
+            let patch = set.patches.last_mut().unwrap();
+            patch.edge_count -= u32::from(patch.edges().end as usize > last);
+        };
+        check(drop_last, is_different);
+    }
+}
