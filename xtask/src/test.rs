@@ -13,7 +13,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
             return Err(format!("`test` takes no `{other}`; {hint}\n\n{HELP}"));
         }
     };
-    let mut tests = shell::cargo(["test", "--workspace", "--locked"]);
+    // One run shows all that fails: the next one is minutes away.
+    let mut tests = shell::cargo(["test", "--workspace", "--locked", "--no-fail-fast"]);
     tests.args(for_cargo);
     models::hand_to(&mut tests)?;
     prepare()?;
