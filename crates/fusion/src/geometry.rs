@@ -1,11 +1,12 @@
 //! Edges as fusion sees them: in f64, in a frame where half the longest side of the mesh is 1.
 
-use drypoint_mesh::{EdgeId, Mesh, MeshAdjacency};
+use drypoint_mesh::{EdgeId, Mesh, MeshAdjacency, Wing};
 use glam::DVec3;
 
 /// Sine of the smallest corner angle of a face whose normal is trusted. Differences of f32 lose at
 /// most 2⁻⁵³ of their size in f64, so above this the normal is off by some 1e-8 radians, well within
-/// what the bounds are grown by. Edges of thinner faces are tested always.
+/// what the bounds are grown by. Edges of thinner faces are always tested, those of faces without area
+/// among them.
 const LEAST_SINE: f64 = 1e-8;
 
 /// The planes and the place of one edge.
@@ -50,9 +51,7 @@ impl<'a> Frame<'a> {
     /// `None` if a face of the edge spans no plane that can be trusted, or is missing.
     pub(crate) fn shape(&self, edge: EdgeId) -> Option<EdgeShape> {
         let wing = self.adjacency.wing(edge);
-        if wing.right == drypoint_mesh::Wing::NONE
-            || self.adjacency.is_beside_face_without_area(edge)
-        {
+        if wing.right == Wing::NONE {
             return None;
         }
         let normals = [self.unit_normal(wing.left_face())?, self.unit_normal(wing.right_face())?];
