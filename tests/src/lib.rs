@@ -4,3 +4,9 @@
 pub mod compare;
 pub mod models;
 pub mod viewpoints;
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+#[derive(Debug)]
+pub struct Readme;

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use drypoint_lines::LineClass;
 use drypoint_mesh::EdgeFilter;
 use glam::DVec3;
 
 /// Draws the contours of triangle meshes as clean vectors, hidden lines removed
 #[derive(Debug, Parser)]
-#[command(name = "drypoint", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+#[command(name = "drypoint", version, after_help = EXAMPLES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -46,7 +46,7 @@ Examples:
   drypoint draw hall.obj --eye 0,2,0 --target 10,2,0 --fov 70 -o hall.png --size 1600x900
   drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png")]
 pub(crate) struct DrawArgs {
-    /// Mesh file, or shape:NAME[:TRIANGLES]
+    /// Mesh file, or `shape:NAME[:TRIANGLES]`
     #[arg(default_value = "shape:torus-knot:20000")]
     pub(crate) model: PathBuf,
     /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg,
@@ -72,7 +72,8 @@ pub(crate) struct ViewArgs {
     /// Where to look at [default: center of the bounding box]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub(crate) target: Option<DVec3>,
-    /// Direction that points up on the page [default: 0,1,0]
+    /// Direction that points up on the page [default: 0,1,0; from straight above or below, what
+    /// lies ahead]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
     /// Vertical field of view in degrees
@@ -85,11 +86,12 @@ pub(crate) struct ViewArgs {
     /// Look from this angle around the up axis, in degrees: 0 from the front, 90 from the right
     #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
     pub(crate) azimuth: Option<f64>,
-    /// Look from this angle above the horizon, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
+    /// Look from this angle above the horizon, in degrees, -90 to 90
+    #[arg(long, value_name = "DEGREES", value_parser = elevation, allow_hyphen_values = true)]
     pub(crate) elevation: Option<f64>,
     /// Distance from the target, in the file's unit [default: so that the model fills the page]
     #[arg(long, value_name = "D", value_parser = number, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "ortho")]
     pub(crate) distance: Option<f64>,
     /// Draw without perspective
     #[arg(long)]
@@ -120,6 +122,11 @@ pub(crate) struct LineArgs {
     /// What to do with hidden lines
     #[arg(long, value_enum, default_value = "none")]
     pub(crate) hidden: Hidden,
+    /// Leave out visible pieces shorter than this that touch no longer line, in pixels: the noise
+    /// of scans. 0 draws all
+    #[arg(long, value_name = "PIXELS", default_value_t = 6.0, value_parser = number)]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) specks: f64,
     /// Width of the lines in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1.5, value_parser = number)]
     #[arg(allow_hyphen_values = true)]
@@ -127,7 +134,7 @@ pub(crate) struct LineArgs {
     /// Color of the lines, as in CSS: black, #1a2b3c, rgb(10 20 30)
     #[arg(long, value_name = "COLOR", default_value = "black")]
     pub(crate) color: String,
-    /// Color of the page, as in CSS, or none [default: none for SVG, white for PNG]
+    /// Color of the page, as in CSS, or none [default: none in an SVG, white in a PNG]
     #[arg(long, value_name = "COLOR")]
     pub(crate) background: Option<String>,
 }
@@ -142,9 +149,9 @@ Examples:
 With --json prints one object: edges, patches, mean_half_angle and max_half_angle in degrees,
 mean_t in the file's unit, expected_cost in edge tests a view, build_seconds, peak_memory in bytes.")]
 pub(crate) struct PatchesArgs {
-    /// Mesh file, or shape:NAME[:TRIANGLES]
+    /// Mesh file, or `shape:NAME[:TRIANGLES]`
     pub(crate) model: PathBuf,
-    /// File to write, usually ending in .patches
+    /// File to write, ending in .patches
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Print what was built as JSON
@@ -161,15 +168,17 @@ pub(crate) struct PatchesArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Fusion")]
 pub(crate) struct FusionArgs {
-    /// Sphere of a patch's bound
-    #[arg(long, value_enum, default_value = "reduced")]
-    pub(crate) sphere: SphereKind,
+    /// Sphere of a patch's bound [default: reduced]
+    #[arg(long, value_enum)]
+    pub(crate) sphere: Option<SphereKind>,
     /// Most edges that are fused as one group: more is slower and better; none for all at once
-    #[arg(long, value_name = "EDGES|none", default_value = "4096", value_parser = partition)]
-    pub(crate) partition: Partition,
+    /// [default: 4096]
+    #[arg(long, value_name = "EDGES|none", value_parser = partition)]
+    pub(crate) partition: Option<Partition>,
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("viewpoint").required(true).args(["eye", "direction"])))]
 #[command(after_help = "\
 Examples:
   drypoint extract bunny.obj --eye 0,0.1,2
@@ -182,11 +191,10 @@ edges_tested, contour_edges, contour. Vertices are counted from 0 in the file's 
 lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices
 at one position the first is named.")]
 pub(crate) struct ExtractArgs {
-    /// Mesh file, shape:NAME[:TRIANGLES], or a .patches file
+    /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file
     pub(crate) model: PathBuf,
     /// Where to look from, in the file's own coordinates
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    #[arg(required_unless_present = "direction", conflicts_with = "direction")]
     pub(crate) eye: Option<DVec3>,
     /// Look without perspective: the direction from the model towards the viewer
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -207,7 +215,7 @@ pub(crate) struct ExtractArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// Mesh file, or shape:NAME[:TRIANGLES]
+    /// Mesh file, or `shape:NAME[:TRIANGLES]`
     pub(crate) model: PathBuf,
     /// Print one JSON object
     #[arg(long)]
@@ -289,6 +297,12 @@ fn number(text: &str) -> Result<f64, String> {
         Ok(_) => Err("the number must be finite".to_owned()),
         Err(_) => Err("this is no number".to_owned()),
     }
+}
+
+fn elevation(text: &str) -> Result<f64, String> {
+    let degrees = number(text)?;
+    let seen = (-90.0..=90.0).contains(&degrees);
+    seen.then_some(degrees).ok_or("the angle must be within -90 and 90".to_owned())
 }
 
 fn vector(text: &str) -> Result<DVec3, String> {

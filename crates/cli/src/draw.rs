@@ -11,9 +11,9 @@ use drypoint_mesh::{EdgeFilter, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
 use crate::args::{Class, DrawArgs, Hidden, LineArgs};
-use crate::output::{Output, print_json};
+use crate::output::{Output, print_json, tell};
 use crate::progress::Stage;
-use crate::source::Source;
+use crate::source::{self, Source};
 use crate::view;
 
 /// What is on the page of one class of lines, in the shape that scripts read.
@@ -36,40 +36,39 @@ enum Format {
 pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     let style = style(&args.lines)?;
     let options = options(&args.lines)?;
-    let source;
     let path = match &args.output {
-        Some(path) => {
-            format_of(path)?;
-            // A place that cannot be written is told before the work, not after.
-            Output::open(path)?;
-            source = Source::load(&args.model)?;
-            path.clone()
-        }
-        None => {
-            source = Source::load(&args.model)?;
-            PathBuf::from(format!("{}.svg", source.stem))
-        }
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}.svg", source::stem(&args.model))),
     };
+    if args.json && path == Path::new("-") {
+        return Err("--json: standard output takes the picture or the JSON, not both".to_owned());
+    }
+    // A place that cannot be written is told before the work, not after.
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
+    let source = Source::load(&args.model)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = source.adjacency();
     if adjacency.report().degenerate == adjacency.report().faces {
         return Err(format!("{}: no face has any area, so there is nothing to see", source.name));
     }
-    let drawing = trace(&source, &adjacency, &camera, (&args.lines.lines, &options));
-    match format {
-        Format::Svg => output.write(to_svg(&drawing, &style, &source.stem).as_bytes())?,
+    let drawing = trace(&source, &adjacency, &camera, (&args.lines, &options));
+    if drawing.layers.iter().all(|layer| layer.visible_length() == 0.0) {
+        tell(&format!("drypoint: no line of {} is visible on the page", source.name));
+    }
+    let picture = match format {
+        Format::Svg => to_svg(&drawing, &style, &source.stem).into_bytes(),
         Format::Png => {
             let _stage = Stage::new("rasterising");
-            let picture = to_png(&drawing, &style).map_err(|error| error.to_string())?;
-            output.write(&picture)?;
+            to_png(&drawing, &style).map_err(|error| error.to_string())?
         }
-    }
+    };
+    // First what may fail, so that no picture is left behind by a run that did.
     if args.json {
-        return print_json(&drawn(&drawing));
+        print_json(&drawn(&drawing))?;
     }
+    output.write(&picture)?;
     if args.output.is_none() {
-        eprintln!("drypoint: wrote {}", path.display());
+        tell(&format!("drypoint: wrote {}", path.display()));
     }
     Ok(())
 }
@@ -79,21 +78,23 @@ fn trace(
     source: &Source,
     adjacency: &MeshAdjacency,
     camera: &Camera,
-    (classes, options): (&[Class], &LineOptions),
+    (args, options): (&LineArgs, &LineOptions),
 ) -> Drawing {
     let mesh = source.mesh();
     let mut contours = Vec::new();
-    // Concave ones too: where a surface is open, inside out or seen from within, they can be seen.
-    // And wanted or not: what is a contour in this view is not a crease.
-    contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::All, &mut contours);
+    if args.lines.contains(&Class::Contour) {
+        // Concave ones too: where a surface is open, inside out or seen from within, they show.
+        contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::All, &mut contours);
+    }
     let segments = Segments::new(mesh, adjacency, &contours, options);
     let occluders = {
         let _stage = Stage::new("sorting faces");
         Occluders::new(mesh, adjacency)
     };
     let _stage = Stage::new("finding what is visible");
-    let mut drawing = Drawing::new(&occluders, &segments, camera, &VisibilityParams::default());
-    drawing.layers.retain(|layer| classes.iter().any(|&class| layer.class == class.into()));
+    let params = VisibilityParams { drop_specks: args.specks, ..Default::default() };
+    let mut drawing = Drawing::new(&occluders, &segments, camera, &params);
+    drawing.layers.retain(|layer| args.lines.iter().any(|&class| layer.class == class.into()));
     drawing
 }
 
@@ -109,11 +110,15 @@ fn options(args: &LineArgs) -> Result<LineOptions, String> {
 }
 
 fn style(args: &LineArgs) -> Result<Style, String> {
-    if args.width <= 0.0 || args.width > 1000.0 {
-        return Err(format!("--width: {} is not above 0 and at most 1000 pixels", args.width));
+    if !(0.05..=1000.0).contains(&args.width) {
+        return Err(format!("--width: {} is not within 0.05 and 1000 pixels", args.width));
+    }
+    if args.specks < 0.0 {
+        return Err(format!("--specks: {} is below 0", args.specks));
     }
     let background = match args.background.as_deref() {
-        None | Some("none") => None,
+        None => None,
+        Some("none") => Some(Color { red: 0, green: 0, blue: 0, alpha: 0 }),
         Some(text) => Some(color("--background", text)?),
     };
     Ok(Style {

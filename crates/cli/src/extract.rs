@@ -26,6 +26,11 @@ struct Found {
 
 pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     let viewpoint = viewpoint(args)?;
+    let fuses = args.method == Some(Method::Patches) && !is_patches_file(&args.model);
+    if !fuses && (args.fusion.sphere.is_some() || args.fusion.partition.is_some()) {
+        let when = "are for building patches: --method patches on a mesh";
+        return Err(format!("--sphere and --partition {when}"));
+    }
     let found = if is_patches_file(&args.model) {
         from_patch_file(args, viewpoint)?
     } else {

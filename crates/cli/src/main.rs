@@ -48,7 +48,9 @@ fn explain(error: &clap::Error) -> ExitCode {
         _ => {
             let text = error.to_string();
             let lines = text.lines().map(str::trim);
-            let wanted = lines.filter(|l| !l.is_empty() && !l.starts_with("For more information"));
+            let wanted = lines.filter(|l| {
+                !l.is_empty() && !l.starts_with("For more information") && !l.starts_with("tip:")
+            });
             let line =
                 wanted.take_while(|l| !l.starts_with("Usage:")).collect::<Vec<_>>().join(" ");
             fail(line.strip_prefix("error: ").unwrap_or(&line))
@@ -57,7 +59,6 @@ fn explain(error: &clap::Error) -> ExitCode {
 }
 
 fn fail(why: &str) -> ExitCode {
-    // File and shape names may hold line breaks; the message is one line all the same.
-    eprintln!("drypoint: {}", why.replace(['\n', '\r'], " "));
+    output::tell(&format!("drypoint: {why}"));
     ExitCode::FAILURE
 }

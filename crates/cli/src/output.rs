@@ -48,8 +48,13 @@ impl Output {
         // Writing through a link replaces what it points to, not the link.
         let path = match path.canonicalize() {
             Ok(existing) => existing,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
-            Err(error) => return Err(fail(&error)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                if path.is_symlink() {
+                    return Err(fail(&"it is a link that leads nowhere"));
+                }
+                path.to_owned()
+            }
+            Err(error) => return Err(fail(&plain(&error))),
         };
         match std::fs::metadata(&path) {
             Ok(there) if there.is_dir() => return Err(fail(&"it is a folder")),
@@ -89,6 +94,11 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Prints one line to standard error, whatever line breaks a file's name may hold.
+pub(crate) fn tell(message: &str) {
+    eprintln!("{}", message.replace(['\n', '\r'], " "));
 }
 
 /// Prints a line of JSON.

@@ -1,6 +1,7 @@
 //! `drypoint patches`: build the asset and save it.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
 use drypoint_fusion::{FusionParams, PatchSet, Progress, fuse};
@@ -8,9 +9,9 @@ use drypoint_mesh::{EdgeFilter, MeshAdjacency};
 use serde::Serialize;
 
 use crate::args::{FusionArgs, PatchesArgs, SphereKind};
-use crate::output::{Output, print_json};
+use crate::output::{Output, print_json, tell};
 use crate::progress::Stage;
-use crate::source::Source;
+use crate::source::{PATCHES_EXTENSION, Source, is_patches_file};
 
 /// What was built, in the shape that scripts read.
 #[derive(Debug, Serialize)]
@@ -31,14 +32,20 @@ struct Built {
 }
 
 pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
+    let name = args.output.display();
+    if args.json && args.output == Path::new("-") {
+        return Err("--json: standard output takes the patches or the JSON, not both".to_owned());
+    }
     let output = Output::open(&args.output)?;
+    // By this name `extract` knows it, and no mesh is overwritten by its own patches.
+    if matches!(output, Output::File(_)) && !is_patches_file(&args.output) {
+        return Err(format!("{name}: a patch file's name ends in .{PATCHES_EXTENSION}"));
+    }
     let source = Source::load(&args.model)?;
     let start = Instant::now();
     let adjacency = source.adjacency();
     let patches = build(&source, &adjacency, args.edges.into(), &args.fusion)?;
     let build_seconds = start.elapsed().as_secs_f64();
-    output.write(&patches.to_bytes())?;
-
     let summary = patches.summary();
     let built = Built {
         edges: patches.wings().len(),
@@ -50,17 +57,17 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
         build_seconds,
         peak_memory: peak_memory(),
     };
+    // First what may fail, so that no file is left behind by a run that did.
     if args.json {
-        return print_json(&built);
+        print_json(&built)?;
     }
-    eprintln!(
-        "{}: {} edges in {} patches, {:.1}° wide on average, {:.1} s",
-        args.output.display(),
-        built.edges,
-        built.patches,
-        built.mean_half_angle,
-        built.build_seconds
-    );
+    output.write(&patches.to_bytes())?;
+    if !args.json {
+        tell(&format!(
+            "{name}: {} edges in {} patches, {:.1}° wide on average, {:.1} s",
+            built.edges, built.patches, built.mean_half_angle, built.build_seconds
+        ));
+    }
     Ok(())
 }
 
@@ -73,10 +80,10 @@ pub(crate) fn build(
 ) -> Result<PatchSet, String> {
     let params = FusionParams {
         sphere: match args.sphere {
-            SphereKind::Mean => drypoint_fusion::SphereKind::Mean,
-            SphereKind::Reduced => drypoint_fusion::SphereKind::Reduced,
+            Some(SphereKind::Mean) => drypoint_fusion::SphereKind::Mean,
+            Some(SphereKind::Reduced) | None => drypoint_fusion::SphereKind::Reduced,
         },
-        max_partition: args.partition.0,
+        max_partition: args.partition.map_or(FusionParams::PAPER.max_partition, |most| most.0),
         ..FusionParams::PAPER
     };
     let stage = Stage::with_length("building patches", adjacency.edges(filter).count() as u64);

@@ -1,6 +1,6 @@
 //! Where the mesh comes from: a file, or a shape that is built in.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{Mesh, MeshAdjacency, io, shapes};
@@ -34,14 +34,16 @@ impl Source {
             let (shape, mesh) = build_shape(shape)?;
             let triangles = 0..u32::try_from(mesh.triangles().len()).map_err(|e| e.to_string())?;
             let parts = vec![io::Part { name: shape.to_owned(), triangles }];
-            return Ok(Self { stem: shape.to_owned(), model: io::Model { mesh, parts }, name });
+            return Ok(Self { stem: stem(model), model: io::Model { mesh, parts }, name });
         }
         if is_patches_file(model) {
             return Err(format!("{name}: is a patch file; this command needs the mesh itself"));
         }
-        let stem = model.file_stem().map(PathBuf::from).unwrap_or_default().display().to_string();
-        let model = io::read(model).map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self { name, stem, model })
+        if model.is_dir() {
+            return Err(format!("{name}: is a folder, not a mesh file"));
+        }
+        let read = io::read(model).map_err(|error| format!("{name}: {error}"))?;
+        Ok(Self { name, stem: stem(model), model: read })
     }
 
     pub(crate) fn mesh(&self) -> &Mesh {
@@ -52,6 +54,15 @@ impl Source {
     pub(crate) fn adjacency(&self) -> MeshAdjacency {
         let _stage = Stage::new("finding edges");
         MeshAdjacency::new(self.mesh())
+    }
+}
+
+/// File name of a model without folder and extension, or the name of its shape.
+pub(crate) fn stem(model: &Path) -> String {
+    let name = model.display().to_string();
+    match name.strip_prefix("shape:") {
+        Some(shape) => shape.split(':').next().unwrap_or_default().to_owned(),
+        None => model.file_stem().unwrap_or_default().display().to_string(),
     }
 }
 

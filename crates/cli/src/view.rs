@@ -16,6 +16,9 @@ pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
     }
     let [width, height] = args.size;
     let margin = args.margin.unwrap_or(0.04 * f64::from(width.min(height)));
+    if margin < 0.0 {
+        return Err(format!("--margin: {margin} is below 0"));
+    }
     build(args, mesh, Page { width, height, margin }).map_err(|error| {
         let option = match error {
             CameraError::EyeAtTarget { .. } => "--eye",
@@ -33,33 +36,28 @@ pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
 fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError> {
     let center = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.center());
     let target = args.target.unwrap_or(center);
-    let points = || mesh.triangles().iter().flatten().map(|&v| mesh.position(v).as_dvec3());
     let (towards_viewer, up) = match args.eye {
         Some(eye) if eye == target => return Err(CameraError::EyeAtTarget { eye }),
         Some(eye) => (eye - target, args.up),
         None => direction(args),
     };
-    if args.ortho {
-        let fitted = Camera::fit_orthographic(points(), towards_viewer, up, page)?;
-        let height =
-            args.height.unwrap_or_else(|| fitted.pixel_size(target) * f64::from(page.height));
-        return match (args.target, args.height) {
-            (None, None) => Ok(fitted),
-            _ => Camera::orthographic(towards_viewer, target, up, height, page),
-        };
+    let ahead = towards_viewer.normalize_or_zero();
+    let points = || {
+        let mesh = mesh.triangles().iter().flatten().map(|&v| mesh.position(v).as_dvec3());
+        // With every point its mirror image beyond the line of sight: so the view that fits them
+        // has the target in its middle.
+        let mirrored = move |p: DVec3| 2.0 * (target + (p - target).dot(ahead) * ahead) - p;
+        mesh.flat_map(move |p| [Some(p), args.target.is_some().then(|| mirrored(p))]).flatten()
+    };
+    match (args.eye, args.distance, args.height) {
+        (_, _, Some(height)) => Camera::orthographic(towards_viewer, target, up, height, page),
+        _ if args.ortho => Camera::fit_orthographic(points(), towards_viewer, up, page),
+        (Some(eye), ..) => Camera::perspective(eye, target, up, args.fov, page),
+        (None, Some(distance), _) => {
+            Camera::perspective(target + distance * ahead, target, up, args.fov, page)
+        }
+        _ => Camera::fit_perspective(points(), towards_viewer, up, args.fov, page),
     }
-    if let Some(eye) = args.eye {
-        return Camera::perspective(eye, target, up, args.fov, page);
-    }
-    let fitted = Camera::fit_perspective(points(), towards_viewer, up, args.fov, page)?;
-    if args.target.is_none() && args.distance.is_none() {
-        return Ok(fitted);
-    }
-    // As far from the target as the fitted view is, so that all of the model would be seen.
-    let ahead = towards_viewer.normalize();
-    let fitted_distance = (fitted.viewpoint().xyz() - target).dot(ahead);
-    let distance = args.distance.unwrap_or(fitted_distance);
-    Camera::perspective(target + distance * ahead, target, up, args.fov, page)
 }
 
 /// The direction towards the viewer and what points up on the page, by side or by angles.

@@ -276,6 +276,12 @@ fn bad_options_say_what_is_wrong() {
         ("--height 3", &["--ortho"]),
         ("--crease-angle 270", &["crease-angle"]),
         ("--distance 0 --view front", &["distance"]),
+        ("--distance 3 --ortho", &["distance", "ortho"]),
+        ("--elevation 100", &["elevation", "90"]),
+        ("--specks -1", &["specks"]),
+        ("--width 0.001", &["width"]),
+        ("-o - --json", &["--json"]),
+        ("--view front --up 0,0,0", &["--up"]),
         ("--wibble", &["--wibble"]),
         ("-o out.bmp", &["out.bmp", ".svg"]),
         ("-o nowhere/out.svg", &["nowhere/out.svg", "folder"]),
@@ -283,7 +289,11 @@ fn bad_options_say_what_is_wrong() {
     ] {
         bench.fail(&format!("draw corner.obj {options}"), words);
     }
-    bench.fail("extract corner.obj", &["--eye"]);
+    bench.fail("extract corner.obj", &["--eye", "--direction"]);
+    bench.fail("extract corner.obj --eye 1,2,3 --sphere mean", &["--sphere", "--method patches"]);
+    bench.fail("patches corner.obj -o corner.obj", &["corner.obj", ".patches"]);
+    bench.fail("patches corner.obj -o - --json", &["--json"]);
+    bench.fail("draw folder", &["folder"]);
     bench.fail("extract corner.obj --eye 1,2,3 --direction 1,2,3", &["--direction"]);
     bench.fail("extract corner.obj --direction 0,0,0", &["--direction"]);
     bench.fail("extract corner.obj --eye 1,2,3 --method magic", &["magic", "brute-force"]);
@@ -302,6 +312,82 @@ fn well_defined_pictures_from_odd_places() {
     // On a vertex, on a face, straight from above without --up.
     for view in ["--eye 0,0,0 --target 1,1,1", "--eye 0.2,0.2,0 --target 1,1,1", "--view top"] {
         bench.succeed(&format!("draw corner.obj -o odd.svg {view}"));
+    }
+}
+
+/// Length in pixels of the visible lines of a class.
+#[track_caller]
+fn visible(bench: &Bench, class: &str, args: &str) -> f64 {
+    bench.json(&format!("draw {args} --json"))[class]["visible_length"].as_f64().unwrap()
+}
+
+#[test]
+fn a_target_is_in_the_middle_and_the_model_on_the_page() {
+    let bench = Bench::new();
+    bench.write("corner.obj", CORNER);
+    for target in ["0,0,100", "0.5,0.5,-100", "0.5,0.5,0.5"] {
+        for ortho in ["", "--ortho"] {
+            let args = format!("corner.obj -o a.svg --view front --target {target} {ortho}");
+            assert!(visible(&bench, "contour", &args) > 30.0, "{args}");
+        }
+    }
+}
+
+#[test]
+fn creases_alone_are_all_there() {
+    let bench = Bench::new();
+    let creases = bench.json("draw shape:cube -o a.svg --lines crease --json");
+    assert_eq!(creases["crease"]["segments"], 12);
+    let both = bench.json("draw shape:cube -o a.svg --lines contour,crease --json");
+    assert_eq!((&both["contour"]["segments"], &both["crease"]["segments"]), (&6.into(), &6.into()));
+}
+
+#[test]
+fn a_surface_stored_twice_looks_like_one_stored_once() {
+    let bench = Bench::new();
+    let once = CORNER.to_owned();
+    let faces = CORNER.lines().filter(|line| line.starts_with('f'));
+    let turned = |line: &str| {
+        let corners: Vec<_> = line.split(' ').collect();
+        format!("f {} {} {}\n", corners[3], corners[2], corners[1])
+    };
+    bench.write("once.obj", &once);
+    bench.write(
+        "same.obj",
+        once.clone() + &faces.clone().map(|f| format!("{f}\n")).collect::<String>(),
+    );
+    bench.write("both.obj", once + &faces.map(turned).collect::<String>());
+    let expected = visible(&bench, "contour", "once.obj -o a.svg --view front");
+    for name in ["same.obj", "both.obj"] {
+        let found = visible(&bench, "contour", &format!("{name} -o a.svg --view front"));
+        assert!((found - expected).abs() < 1e-6, "{name}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn a_blank_page_is_told() {
+    let bench = Bench::new();
+    bench.write("corner.obj", CORNER);
+    let output = bench.run("draw corner.obj -o a.svg --eye 9,9,9 --target 20,20,20");
+    assert!(output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("no line of corner.obj"));
+}
+
+#[cfg(unix)]
+#[test]
+fn no_output_is_left_by_a_run_that_failed() {
+    let bench = Bench::new();
+    for command in ["draw shape:cube -o a.svg --json", "patches shape:cube -o a.patches --json"] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let status = Command::new(env!("CARGO_BIN_EXE_drypoint"))
+            .args(command.split_whitespace())
+            .current_dir(bench.path())
+            .stdout(full)
+            .stderr(std::process::Stdio::null())
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(1), "{command}");
+        assert!(bench.files().is_empty(), "{command}");
     }
 }
 

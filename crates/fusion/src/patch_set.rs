@@ -138,10 +138,11 @@ impl PatchSet {
         let half_angles = || self.patches.iter().map(half_angle);
         let apex_distances = self.patches.iter().map(|p| f64::from(p.bound.apex_distance));
         let count = self.patches.len().max(1) as f64;
+        // Folded, because the empty `sum` of floats is −0.
         Summary {
-            mean_half_angle: half_angles().sum::<f64>() / count,
+            mean_half_angle: half_angles().fold(0.0, |sum, x| sum + x) / count,
             max_half_angle: half_angles().fold(0.0, f64::max),
-            mean_apex_distance: apex_distances.sum::<f64>() / count,
+            mean_apex_distance: apex_distances.fold(0.0, |sum, x| sum + x) / count,
             max_edges: self.patches.iter().map(|patch| patch.edge_count).max().unwrap_or(0),
         }
     }

@@ -61,6 +61,9 @@ impl Segments {
     /// ask. An edge is drawn once: as a contour rather than as a boundary rather than as a crease,
     /// and the wings of a non-manifold edge are one line. Linear but for a sort of what is drawn.
     ///
+    /// At a non-manifold edge a face and its own copy count as one: they are a contour from
+    /// everywhere, but a surface that is stored twice should look like one that is stored once.
+    ///
     /// Without `contours`, creases that are contours in this view are creases.
     ///
     /// # Panics
@@ -85,10 +88,15 @@ impl Segments {
             }
             _ => None,
         });
+        let is_copy = |edge: EdgeId| {
+            let wing = adjacency.wing(edge);
+            adjacency.class(edge) == EdgeClass::NonManifold && wing.left == wing.right
+        };
         let mut lines: Vec<_> = contours
             .iter()
             .map(|&edge| (LineClass::Contour, edge))
             .chain(others)
+            .filter(|&(_, edge)| !is_copy(edge))
             .map(|(class, edge)| (adjacency.wing(edge).ends(), class, edge))
             .collect();
         lines.sort_unstable();

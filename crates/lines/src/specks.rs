@@ -9,12 +9,14 @@ use crate::Run;
 const CELL: f64 = 1.0;
 
 /// For each of `runs` whether it is part of a speck: a visible run or several touching ones that
-/// are shorter than `limit` pixels in sum and touch no longer one. Linear in the pixels of line.
+/// are shorter than `limit` pixels in sum and touch no longer one. A closed run is the outline of
+/// something, however small, and where nothing longer is to be seen, what is short is the picture:
+/// neither are specks. Linear in the pixels of line.
 ///
 /// Length alone would not do: on a dense mesh an outline is made of many short runs.
 pub(crate) fn specks(runs: &[&Run], limit: f64) -> Vec<bool> {
     let lengths: Vec<f64> = runs.iter().map(|run| run.length()).collect();
-    let is_short = |i: usize| runs[i].visible && lengths[i] < limit;
+    let is_short = |i: usize| runs[i].visible && !runs[i].closed && lengths[i] < limit;
     let mut groups = Groups { parents: (0..runs.len()).collect() };
     let mut owners: HashMap<[i64; 2], usize> = HashMap::new();
     for index in (0..runs.len()).filter(|&i| is_short(i)) {
@@ -40,7 +42,10 @@ pub(crate) fn specks(runs: &[&Run], limit: f64) -> Vec<bool> {
             });
         }
     }
-    (0..runs.len()).map(|i| is_short(i) && group_length[groups.root(i)] < limit).collect()
+    let is_speck = |i: usize| is_short(i) && group_length[groups.root(i)] < limit;
+    let is_speck: Vec<bool> = (0..runs.len()).map(is_speck).collect();
+    let is_all_there_is = runs.iter().zip(&is_speck).all(|(run, &speck)| speck || !run.visible);
+    if is_all_there_is { vec![false; runs.len()] } else { is_speck }
 }
 
 /// Visits the cells along a run, at steps of half a cell, some more than once.
@@ -92,9 +97,13 @@ mod tests {
         }
     }
 
+    /// Beside a long line, so that not all is short.
     #[track_caller]
     fn check(runs: &[Run], expected: &[bool]) {
-        assert_eq!(specks(&runs.iter().collect::<Vec<_>>(), 4.0), expected);
+        let long = run(&[[0.0, 500.0], [500.0, 500.0]], true);
+        let found = specks(&runs.iter().chain([&long]).collect::<Vec<_>>(), 4.0);
+        assert_eq!(found[..runs.len()], *expected);
+        assert!(!found[runs.len()]);
     }
 
     #[test]
@@ -103,6 +112,21 @@ mod tests {
         check(&[run(&[[5.0, 5.0], [7.0, 5.0]], true)], &[true]);
         check(&[run(&[[5.0, 5.0], [9.0, 5.0]], true)], &[false]);
         check(&[run(&[[5.0, 5.0], [7.0, 5.0]], false)], &[false]);
+    }
+
+    #[test]
+    fn a_small_outline_is_none() {
+        let mut outline = run(&[[5.0, 5.0], [6.0, 5.0], [5.0, 6.0]], true);
+        outline.edges.push(EdgeId(9));
+        outline.closed = true;
+        check(&[outline], &[false]);
+    }
+
+    #[test]
+    fn a_small_picture_is_kept() {
+        let (seen, hidden) =
+            (run(&[[5.0, 5.0], [7.0, 5.0]], true), run(&[[9.0, 5.0], [99.0, 5.0]], false));
+        assert_eq!(specks(&[&seen, &hidden], 4.0), [false, false]);
     }
 
     #[test]

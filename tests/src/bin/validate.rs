@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use drypoint_fusion::{FusionParams, fuse};
+use drypoint_fusion::{FusionParams, SphereKind, fuse};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, io, shapes};
 use drypoint_tests::compare::{Agreement, Disagreement, compare};
 use drypoint_tests::{models, viewpoints};
@@ -13,13 +13,14 @@ use drypoint_tests::{models, viewpoints};
 const HELP: &str = "\
 Usage: cargo xtask validate [--only TEXT] [--partition EDGES]
 
-Compares every extractor with the definition of a contour edge, on every built-in shape and every
+Compares every extractor with the definition of a contour edge, on every built-in shape (with Mean
+and Reduced spheres, fused in parts of 128 edges, of 4096 and whole) and every
 mesh file in the folder that DRYPOINT_MODELS names, with both filters, from the 252 viewpoints of
 the protocol, orthographic views, viewpoints near the surface, and viewpoints on vertices, edges and
 planes of faces. Ends at the first disagreement with status 1.
 
   --only TEXT        only meshes whose name holds TEXT
-  --partition EDGES  most edges fused as one group, from 2 (default 512; the paper's is 4096, and
+  --partition EDGES  of mesh files, most edges fused as one group, from 2 (default 512; the paper's is 4096, and
                      takes minutes on a large mesh)";
 
 /// Viewpoints of the near set, and triangles that hostile viewpoints are built on.
@@ -70,13 +71,17 @@ fn run(options: &Options) -> Result<(), String> {
     );
     let mut total = Agreement::default();
     for shape in shapes::all().into_iter().filter(|shape| shape.name.contains(&options.only)) {
-        validate(shape.name, &shape.mesh, options, &mut total)?;
+        for params in presets() {
+            validate((shape.name, &shape.mesh), &params, &mut total)?;
+        }
     }
     for path in models::files()? {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if name.contains(&options.only) {
             let model = io::read(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-            validate(&name, &model.mesh, options, &mut total)?;
+            let max_partition = Some(options.partition);
+            let params = FusionParams { max_partition, ..FusionParams::PAPER };
+            validate((&name, &model.mesh), &params, &mut total)?;
         }
     }
     println!(
@@ -86,10 +91,21 @@ fn run(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
+/// On shapes, which are small: both spheres, and parts of space from small to whole.
+fn presets() -> [FusionParams; 4] {
+    let reduced = FusionParams::PAPER;
+    let mean = FusionParams { sphere: SphereKind::Mean, ..reduced };
+    [
+        reduced,
+        mean,
+        FusionParams { max_partition: Some(128), ..reduced },
+        FusionParams { max_partition: None, ..mean },
+    ]
+}
+
 fn validate(
-    name: &str,
-    mesh: &Mesh,
-    options: &Options,
+    (name, mesh): (&str, &Mesh),
+    params: &FusionParams,
     total: &mut Agreement,
 ) -> Result<(), String> {
     let adjacency = MeshAdjacency::new(mesh);
@@ -101,8 +117,7 @@ fn validate(
         .collect();
     for (filter, filter_name) in [(EdgeFilter::Convex, "convex"), (EdgeFilter::All, "all")] {
         let start = Instant::now();
-        let params = FusionParams { max_partition: Some(options.partition), ..FusionParams::PAPER };
-        let patches = fuse(mesh, &adjacency, filter, &params, &|_| ControlFlow::Continue(()))
+        let patches = fuse(mesh, &adjacency, filter, params, &|_| ControlFlow::Continue(()))
             .map_err(|error| format!("{name}: {error}"))?;
         patches.validate().map_err(|error| format!("{name}: {error}"))?;
         let agreement = compare(mesh, &adjacency, &patches, &viewpoints)

@@ -48,6 +48,7 @@ pub(crate) fn corners_from(mesh: &Mesh, half_edge: u32) -> [u32; 3] {
 }
 
 /// All meetings, by their half-edges, and what the mesh is made of.
+// Long because a judge should be read from top to bottom, with nothing elsewhere to trust.
 pub(crate) fn meetings(mesh: &Mesh) -> (Vec<Meeting>, TopologyReport) {
     let mut at_edge: BTreeMap<[Place; 2], Vec<u32>> = BTreeMap::new();
     let mut report = TopologyReport {
