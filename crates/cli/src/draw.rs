@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use drypoint_lines::{
     Camera, Color, Drawing, HiddenLines, Layer, LineOptions, Occluders, Segments, Style,
-    VisibilityParams, to_png, to_svg,
+    VisibilityParams, filter_for_drawing, to_png, to_svg,
 };
-use drypoint_mesh::{EdgeFilter, MeshAdjacency, contour_edges};
+use drypoint_mesh::{MeshAdjacency, contour_edges};
 use serde::Serialize;
 
 use crate::args::{Class, DrawArgs, Hidden, LineArgs};
@@ -83,8 +83,8 @@ fn trace(
     let mesh = source.mesh();
     let mut contours = Vec::new();
     if args.lines.contains(&Class::Contour) {
-        // Concave ones too: where a surface is open, inside out or seen from within, they show.
-        contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::All, &mut contours);
+        let filter = filter_for_drawing(mesh, adjacency, camera.viewpoint());
+        contour_edges(mesh, adjacency, camera.viewpoint(), filter, &mut contours);
     }
     let segments = Segments::new(mesh, adjacency, &contours, options);
     let occluders = {

@@ -365,6 +365,23 @@ fn a_surface_stored_twice_looks_like_one_stored_once() {
 }
 
 #[test]
+fn a_solid_turned_inside_out_is_seen() {
+    let bench = Bench::new();
+    bench.write("out.obj", CORNER);
+    bench.write(
+        "in.obj",
+        CORNER
+            .replace("f 1 3 2", "f 1 2 3")
+            .replace("f 1 2 4", "f 1 4 2")
+            .replace("f 1 4 3", "f 1 3 4")
+            .replace("f 2 3 4", "f 2 4 3"),
+    );
+    let [out, turned] = ["out.obj", "in.obj"]
+        .map(|name| visible(&bench, "contour", &format!("{name} -o a.svg --view front")));
+    assert!(turned > 100.0 && (turned - out).abs() < 1e-6, "{turned}, not {out}");
+}
+
+#[test]
 fn a_blank_page_is_told() {
     let bench = Bench::new();
     bench.write("corner.obj", CORNER);

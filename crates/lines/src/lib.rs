@@ -52,7 +52,7 @@
 //! Concave contour edges of a closed mesh are always hidden, and [`EdgeFilter::Convex`] saves them.
 //! Where a surface is seen from behind, because it is open, inside out, or its faces disagree, what
 //! is concave from the front is convex from behind: pass the contours of [`EdgeFilter::All`] there,
-//! or lines go missing. It finds the same visible lines elsewhere, and its lines of sight cost a third more.
+//! or lines go missing. [`filter_for_drawing`] chooses.
 //!
 //! # Features
 //!
@@ -70,6 +70,7 @@ mod camera_error;
 mod chain;
 mod color;
 mod drawing;
+mod filter;
 mod fit;
 #[cfg(feature = "visibility")]
 mod occluders;
@@ -87,6 +88,7 @@ pub use camera_error::CameraError;
 pub use chain::{Chain, chain};
 pub use color::Color;
 pub use drawing::{Drawing, HiddenLines, Layer, Style};
+pub use filter::filter_for_drawing;
 #[cfg(feature = "visibility")]
 pub use occluders::Occluders;
 pub use page::Page;

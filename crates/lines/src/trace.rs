@@ -25,8 +25,8 @@ pub struct VisibilityParams {
     /// the width of a hair, where a contour passes behind a fold of its own surface.
     pub close_gaps: f64,
     /// Visible runs shorter than this, alone or in sum with those they touch, are not drawn unless
-    /// they touch a longer one or are closed; 0 or more. They are true contours of the noise of
-    /// scanned surfaces.
+    /// they touch a longer one or are all that is visible; 0 or more. They are true contours of the
+    /// noise of scanned surfaces.
     pub drop_specks: f64,
 }
 
