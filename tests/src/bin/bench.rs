@@ -9,7 +9,8 @@ use std::time::Instant;
 use drypoint_cpu::{BruteForce, extract_patches};
 use drypoint_fusion::{FusionParams, PatchSet, SphereKind, fuse};
 use drypoint_lines::{
-    Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams, to_svg,
+    Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams,
+    filter_for_drawing, to_svg,
 };
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, contour_edges, io, shapes};
 use drypoint_tests::compare::compare;
@@ -156,7 +157,8 @@ fn draw(mesh: &Mesh, adjacency: &MeshAdjacency) -> Result<(), String> {
     let mut lap = Instant::now();
     let mut seconds = || std::mem::replace(&mut lap, Instant::now()).elapsed().as_secs_f64();
     let mut contours = Vec::new();
-    contour_edges(mesh, adjacency, camera.viewpoint(), EdgeFilter::Convex, &mut contours);
+    let filter = filter_for_drawing(mesh, adjacency, camera.viewpoint());
+    contour_edges(mesh, adjacency, camera.viewpoint(), filter, &mut contours);
     let options = LineOptions { boundary: true, crease_angle: None };
     let segments = Segments::new(mesh, adjacency, &contours, &options);
     let extracted = seconds();
