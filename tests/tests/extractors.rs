@@ -11,7 +11,7 @@ use drypoint_tests::compare::compare;
 use drypoint_tests::{models, viewpoints};
 
 /// Small groups keep a debug build quick; the answer may not depend on them.
-const PARAMS: FusionParams = FusionParams { max_partition: Some(128), ..FusionParams::PAPER };
+const PARAMS: FusionParams = FusionParams::PAPER.with_max_partition(Some(128));
 
 fn patches(mesh: &Mesh, adjacency: &MeshAdjacency, filter: EdgeFilter) -> PatchSet {
     fuse(mesh, adjacency, filter, &PARAMS, &|_| ControlFlow::Continue(())).unwrap()

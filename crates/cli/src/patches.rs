@@ -78,14 +78,11 @@ pub(crate) fn build(
     filter: EdgeFilter,
     args: &FusionArgs,
 ) -> Result<PatchSet, String> {
-    let params = FusionParams {
-        sphere: match args.sphere {
-            Some(SphereKind::Mean) => drypoint_fusion::SphereKind::Mean,
-            Some(SphereKind::Reduced) | None => drypoint_fusion::SphereKind::Reduced,
-        },
-        max_partition: args.partition.map_or(FusionParams::PAPER.max_partition, |most| most.0),
-        ..FusionParams::PAPER
+    let params = match args.sphere {
+        Some(SphereKind::Mean) => FusionParams::PAPER_MEAN,
+        Some(SphereKind::Reduced) | None => FusionParams::PAPER,
     };
+    let params = args.partition.map_or(params, |most| params.with_max_partition(most.0));
     let stage = Stage::with_length("building patches", adjacency.edges(filter).count() as u64);
     let progress = |progress: Progress| {
         stage.set(progress.edges_done as u64);

@@ -12,7 +12,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use drypoint_fusion::{FusionParams, PatchSet, SphereKind, fuse};
+use drypoint_fusion::{FusionParams, PatchSet, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, io};
 use glam::DVec3;
 
@@ -28,10 +28,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "sphere    c_max  patches  always  max α°  mean α°  mean t  accepted   tested     cost  seconds"
     );
-    for sphere in [SphereKind::Mean, SphereKind::Reduced] {
+    for preset in [FusionParams::PAPER_MEAN, FusionParams::PAPER] {
         for size in &sizes {
             let max_partition = if size == "all" { None } else { Some(size.parse()?) };
-            let params = FusionParams { sphere, max_partition, ..FusionParams::PAPER };
+            let params = preset.with_max_partition(max_partition);
             let start = Instant::now();
             let go_on = |_| ControlFlow::Continue(());
             let set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)?;
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let (accepted, tested) = mean_view(&set);
             println!(
                 "{:<8}{size:>7}{:>9}{:>8}{:>8.2}{:>9.2}{:>8.4}{accepted:>10.1}{tested:>9.1}{:>9.1}{seconds:>9.2}",
-                format!("{sphere:?}"),
+                format!("{:?}", params.bound),
                 set.patches().len(),
                 set.always_tested().len(),
                 summary.max_half_angle.to_degrees(),

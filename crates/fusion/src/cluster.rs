@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use crate::CostModel;
 use crate::columns::Columns;
 use crate::extent::{Extent, TRAITS};
 use crate::geometry::EdgeShape;
+use crate::greedy::GreedyModel;
 use crate::lanes::{Lanes, Number};
 
 /// How far a computed cost may lie from the exact one, per edge: generous, as it only lets a few
@@ -30,7 +30,7 @@ pub(crate) struct Cluster<E> {
 }
 
 impl<E: Extent> Cluster<E> {
-    pub(crate) fn of_edge(number: u32, edge: &EdgeShape, model: &CostModel) -> Self {
+    pub(crate) fn of_edge(number: u32, edge: &EdgeShape, model: &GreedyModel) -> Self {
         let mut cluster = Self {
             edges: vec![number],
             cost: 0.0,
@@ -45,7 +45,7 @@ impl<E: Extent> Cluster<E> {
         cluster
     }
 
-    pub(crate) fn fused(a: &Self, b: &Self, model: &CostModel) -> Self {
+    pub(crate) fn fused(a: &Self, b: &Self, model: &GreedyModel) -> Self {
         Self {
             edges: a.edges.iter().chain(&b.edges).copied().collect(),
             cost: Self::union_cost(a, b, model, f64::INFINITY),
@@ -57,13 +57,13 @@ impl<E: Extent> Cluster<E> {
 
     /// What fusing a and b saves per view, in edge tests: G = E(a) + E(b) − E(a ∪ b). The same for
     /// (b, a), to the last bit. Where it falls short of `least`, any number below `least`.
-    pub(crate) fn gain(a: &Self, b: &Self, model: &CostModel, least: f64) -> f64 {
+    pub(crate) fn gain(a: &Self, b: &Self, model: &GreedyModel, least: f64) -> f64 {
         let apart = a.cost + b.cost;
         apart - Self::union_cost(a, b, model, apart - least)
     }
 
     /// E(a ∪ b); where that is certainly above `most`, any number above `most`.
-    fn union_cost(a: &Self, b: &Self, model: &CostModel, most: f64) -> f64 {
+    fn union_cost(a: &Self, b: &Self, model: &GreedyModel, most: f64) -> f64 {
         let edges = a.edges.len() + b.edges.len();
         let axis = axis(a.normal_sum + b.normal_sum);
         let cos = a.least_cosine(axis).min(b.least_cosine(axis));
@@ -149,7 +149,7 @@ impl<T: Copy> Outline<T> {
 pub(crate) fn most_gain<E: Extent>(
     a: &Outline<Lanes>,
     b: &Outline<Lanes>,
-    model: &CostModel,
+    model: &GreedyModel,
 ) -> Lanes {
     let ([a0, a1, a2], [b0, b1, b2]) = (a.normal_sum, b.normal_sum);
     let (x, y, z) = (a0 + b0, a1 + b1, a2 + b2);
@@ -223,13 +223,13 @@ mod tests {
             })
     }
 
-    fn cluster<E: Extent>(edges: &[EdgeShape], model: &CostModel) -> Cluster<E> {
+    fn cluster<E: Extent>(edges: &[EdgeShape], model: &GreedyModel) -> Cluster<E> {
         let single = |(i, edge): (u32, &EdgeShape)| Cluster::<E>::of_edge(i, edge, model);
         (0..).zip(edges).map(single).reduce(|a, b| Cluster::fused(&a, &b, model)).unwrap()
     }
 
     /// E by its definition, with angles.
-    fn expected_cost(edges: &[EdgeShape], is_reduced: bool, model: &CostModel) -> f64 {
+    fn expected_cost(edges: &[EdgeShape], is_reduced: bool, model: &GreedyModel) -> f64 {
         let normals: Vec<DVec3> = edges.iter().flat_map(|e| e.normals).collect();
         let axis = normals.iter().sum::<DVec3>().normalize();
         let alpha = normals.iter().map(|n| n.cross(axis).length().atan2(n.dot(axis)));
@@ -256,7 +256,7 @@ mod tests {
     }
 
     fn check_pair<E: Extent>(a: &[EdgeShape], b: &[EdgeShape], is_reduced: bool, distance: f64) {
-        let model = CostModel { view_distance: distance, ..CostModel::PAPER };
+        let model = GreedyModel { patch_test: 1.363, view_distance: distance };
         let (first, second) = (cluster::<E>(a, &model), cluster::<E>(b, &model));
         let gain = Cluster::gain(&first, &second, &model, f64::NEG_INFINITY);
         let reversed = Cluster::gain(&second, &first, &model, f64::NEG_INFINITY);

@@ -33,10 +33,13 @@ use glam::Vec3;
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::patch_set::little_endian;
-use crate::{CostModel, FusionParams, InvalidPatches, Patch, PatchSet, Provenance, SphereKind};
+use crate::{
+    BoundKind, CostModel, FusionParams, InvalidPatches, Levels, Method, Patch, PatchSet,
+    Provenance, SphereKind, SuperPatch, ViewProfile,
+};
 
 const MAGIC: &[u8; 8] = b"DRYPATCH";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 256;
 /// Of every section.
 const ALIGNMENT: usize = 256;
@@ -94,6 +97,7 @@ pub enum PatchFileError {
 
 /// Where each section is.
 struct Layout {
+    super_patches: Range<u64>,
     patches: Range<u64>,
     wings: Range<u64>,
     edge_ids: Range<u64>,
@@ -102,7 +106,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(patch_count: u64, edge_count: u64, vertex_count: u64) -> Self {
+    fn new([super_patch_count, patch_count, edge_count, vertex_count]: [u64; 4]) -> Self {
         let mut end = HEADER as u64;
         // Counts are below 2³², so that nothing overflows.
         let mut section = |count: u64, size: usize| {
@@ -111,6 +115,7 @@ impl Layout {
             start..end
         };
         Self {
+            super_patches: section(super_patch_count, size_of::<SuperPatch>()),
             patches: section(patch_count, size_of::<Patch>()),
             wings: section(edge_count, size_of::<Wing>()),
             edge_ids: section(edge_count, size_of::<EdgeId>()),
@@ -127,14 +132,16 @@ impl Layout {
 impl PatchSet {
     /// The asset as a file's content. The same asset always gives the same bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let counts = [self.patches.len(), self.wings.len(), self.positions.len()];
-        let layout = Layout::new(counts[0] as u64, counts[1] as u64, counts[2] as u64);
+        let lists = [self.super_patches.len(), self.patches.len()];
+        let counts = [lists[0], lists[1], self.wings.len(), self.positions.len()];
+        let layout = Layout::new(counts.map(|count| count as u64));
         let mut bytes = self.header(counts, layout.total());
         let mut append = |section: &Range<u64>, data: &[u8]| {
             bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
             debug_assert_eq!(section, &(bytes.len() as u64..(bytes.len() + data.len()) as u64));
             bytes.extend_from_slice(data);
         };
+        append(&layout.super_patches, &little_endian(&self.super_patches));
         append(&layout.patches, &little_endian(&self.patches));
         append(&layout.wings, &little_endian(&self.wings));
         append(&layout.edge_ids, &little_endian(&self.edge_ids));
@@ -154,7 +161,7 @@ impl PatchSet {
         out.write_all(&self.to_bytes())
     }
 
-    fn header(&self, counts: [usize; 3], total: u64) -> Vec<u8> {
+    fn header(&self, counts: [usize; 4], total: u64) -> Vec<u8> {
         let Provenance { params, filter, mesh_hash, unit } = self.provenance;
         let mut header = Vec::with_capacity(HEADER);
         let mut put = |bytes: &[u8]| header.extend_from_slice(bytes);
@@ -166,13 +173,25 @@ impl PatchSet {
         put(&mesh_hash.to_le_bytes());
         put(&unit.to_le_bytes());
         put(&params.cost.patch_test.to_le_bytes());
-        put(&params.cost.view_distance.to_le_bytes());
-        put(&(params.sphere as u32).to_le_bytes());
-        put(&params.cache_size.to_le_bytes());
-        put(&u32::from(params.max_partition.is_some()).to_le_bytes());
-        put(&params.max_partition.unwrap_or(0).to_le_bytes());
+        put(&params.cost.accepted_patch.to_le_bytes());
+        for distance_or_weight in params.views.distances.into_iter().chain(params.views.weights) {
+            put(&distance_or_weight.to_le_bytes());
+        }
+        let CostModel { block, max_edges, max_vertices, .. } = params.cost;
+        let method = match params.method {
+            Method::Greedy { sphere, cache_size, max_partition } => {
+                let sphere = sphere as u32;
+                let limit = max_partition.unwrap_or(0);
+                [0, sphere, cache_size, u32::from(max_partition.is_some()), limit]
+            }
+            Method::Planes { cell, sweeps } => [1, cell, sweeps, 0, 0],
+        };
+        let kinds = [params.bound as u32, params.levels as u32];
+        for word in [block, max_edges, max_vertices].into_iter().chain(kinds).chain(method) {
+            put(&word.to_le_bytes());
+        }
         for count in counts {
-            #[expect(clippy::cast_possible_truncation, reason = "ids of all three are u32")]
+            #[expect(clippy::cast_possible_truncation, reason = "ids of all four are u32")]
             put(&(count as u32).to_le_bytes());
         }
         header.resize(HEADER, 0);
@@ -208,12 +227,13 @@ impl PatchSet {
         if hash(bytes) != header.u64(16) {
             return Err(PatchFileError::Corrupt);
         }
-        let [patches, edges, vertices] = [80, 84, 88].map(|at| u64::from(header.u32(at)));
-        let layout = Layout::new(patches, edges, vertices);
+        let counts = [168, 172, 176, 180].map(|at| u64::from(header.u32(at)));
+        let layout = Layout::new(counts);
         if layout.total() != expected {
             return Err(PatchFileError::Header { field: "counts" });
         }
         let set = Self {
+            super_patches: read_section(bytes, &layout.super_patches),
             patches: read_section(bytes, &layout.patches),
             wings: read_section(bytes, &layout.wings),
             edge_ids: read_section(bytes, &layout.edge_ids),
@@ -249,19 +269,55 @@ impl Header<'_> {
             1 => EdgeFilter::All,
             _ => return invalid("edge filter"),
         };
-        let sphere = match self.u32(64) {
-            0 => SphereKind::Mean,
-            1 => SphereKind::Reduced,
-            _ => return invalid("sphere"),
+        let bound = match self.u32(140) {
+            0 => BoundKind::Mean,
+            1 => BoundKind::Reduced,
+            2 => BoundKind::Minimal,
+            3 => BoundKind::Tight,
+            _ => return invalid("bound"),
         };
-        let max_partition = match self.u32(72) {
-            0 => None,
-            1 => Some(self.u32(76)),
-            _ => return invalid("partition"),
+        let levels = match self.u32(144) {
+            1 => Levels::One,
+            2 => Levels::Two,
+            _ => return invalid("levels"),
         };
-        let cost = CostModel { patch_test: self.f64(48), view_distance: self.f64(56) };
-        let params = FusionParams { sphere, cost, cache_size: self.u32(68), max_partition };
+        let cost = CostModel {
+            patch_test: self.f64(48),
+            accepted_patch: self.f64(56),
+            block: self.u32(128),
+            max_edges: self.u32(132),
+            max_vertices: self.u32(136),
+        };
+        let views = ViewProfile {
+            distances: std::array::from_fn(|i| self.f64(64 + 8 * i)),
+            weights: std::array::from_fn(|i| self.f64(96 + 8 * i)),
+        };
+        let Some(method) = self.method() else { return invalid("method") };
+        let params = FusionParams { bound, cost, views, method, levels };
         Ok(Provenance { params, filter, mesh_hash: self.u64(32), unit: self.f64(40) })
+    }
+}
+
+impl Header<'_> {
+    fn method(&self) -> Option<Method> {
+        let [kind, a, b, c, d] = [148, 152, 156, 160, 164].map(|at| self.u32(at));
+        match kind {
+            0 => {
+                let sphere = match a {
+                    0 => SphereKind::Mean,
+                    1 => SphereKind::Reduced,
+                    _ => return None,
+                };
+                let max_partition = match c {
+                    0 => None,
+                    1 => Some(d),
+                    _ => return None,
+                };
+                Some(Method::Greedy { sphere, cache_size: b, max_partition })
+            }
+            1 => Some(Method::Planes { cell: a, sweeps: b }),
+            _ => None,
+        }
     }
 }
 

@@ -8,10 +8,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::Frame;
-use crate::grow::{Grown, grow};
+use crate::greedy::{GreedyModel, Settings};
+use crate::grow::{Grown, Published, grow_greedily};
 use crate::progress::Counter;
 use crate::{
-    Cancelled, FusionParams, Patch, PatchSet, Progress, Provenance, SphereKind, mesh_hash,
+    BoundKind, Cancelled, FusionParams, Method, Patch, PatchSet, Progress, Provenance, SphereKind,
+    mesh_hash,
 };
 
 /// Groups the edges of `mesh` that `filter` keeps into patches (Tsiapkolis and Bénard, CGF 2024,
@@ -47,7 +49,7 @@ pub fn fuse(
         .map(|edges| {
             counter.check()?;
             let bound =
-                frame.as_ref().map_or(DoubleCone::ALWAYS, |f| bound(f, &edges, params.sphere));
+                frame.as_ref().map_or(DoubleCone::ALWAYS, |f| bound(f, &edges, params.bound));
             Ok((bound, edges))
         })
         .collect::<Result<_, _>>()?;
@@ -70,21 +72,56 @@ pub fn fuse(
     Ok(set)
 }
 
+/// Groups `edges`. Those beside a face that spans no plane are always tested.
+fn grow(
+    frame: &Frame,
+    edges: Vec<EdgeId>,
+    params: &FusionParams,
+    counter: &Counter,
+) -> Result<Grown, Cancelled> {
+    let (fusible, mut without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
+        edges.into_par_iter().partition(|&edge| frame.shape(edge).is_some());
+    counter.count(2 * without_shape.len())?;
+    let published = |sphere, cache_size: u32, max_partition| {
+        let model = GreedyModel {
+            patch_test: params.cost.patch_test,
+            view_distance: params.views.mean_distance(),
+        };
+        let settings = Settings { model, cache_size: cache_size.max(1) as usize };
+        Published { sphere, settings, max_partition }
+    };
+    let mut grown = match params.method {
+        Method::Greedy { sphere, cache_size, max_partition } => {
+            let method = published(sphere, cache_size, max_partition);
+            grow_greedily(frame, &fusible, method, counter)?
+        }
+        Method::Planes { .. } => {
+            let method = published(SphereKind::Reduced, 50, Some(512));
+            grow_greedily(frame, &fusible, method, counter)?
+        }
+    };
+    grown.always_tested.append(&mut without_shape);
+    Ok(grown)
+}
+
 /// The bound that goes with the patch, in model units.
-fn bound(frame: &Frame, edges: &[EdgeId], sphere: SphereKind) -> DoubleCone {
+fn bound(frame: &Frame, edges: &[EdgeId], kind: BoundKind) -> DoubleCone {
     let shapes: Vec<_> = edges.iter().filter_map(|&edge| frame.shape(edge)).collect();
     let position = |vertex: u32| frame.mesh.position(vertex).as_dvec3();
-    let sphere = match sphere {
-        SphereKind::Mean => {
+    let sphere = match kind {
+        BoundKind::Mean => {
             let mut vertices: Vec<u32> = shapes.iter().flat_map(|edge| edge.vertices).collect();
             vertices.sort_unstable();
             vertices.dedup();
             Sphere::mean(vertices.iter().map(|&vertex| position(vertex)))
         }
-        SphereKind::Reduced => Sphere::reduced(shapes.iter().map(|e| e.vertices.map(position))),
+        _ => Sphere::reduced(shapes.iter().map(|e| e.vertices.map(position))),
     };
     let normals: Vec<DVec3> = shapes.iter().flat_map(|edge| edge.normals).collect();
-    let cone = NormalCone::mean(normals.iter().copied());
+    let cone = match kind {
+        BoundKind::Mean | BoundKind::Reduced => NormalCone::mean(normals.iter().copied()),
+        BoundKind::Minimal | BoundKind::Tight => NormalCone::minimal(normals.iter().copied()),
+    };
     DoubleCone::from(SpatializedNormalCone { cone, sphere })
 }
 
@@ -107,6 +144,7 @@ fn arrange(
         patch
     };
     PatchSet {
+        super_patches: Vec::new(),
         patches: patches.iter().map(place).collect(),
         wings: edge_ids.iter().map(|&edge| adjacency.wing(edge)).collect(),
         classes: edge_ids.iter().map(|&edge| adjacency.class(edge)).collect(),

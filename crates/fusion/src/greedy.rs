@@ -11,19 +11,37 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
+use crate::Cancelled;
 use crate::cluster::Cluster;
 use crate::extent::Extent;
 use crate::geometry::EdgeShape;
 use crate::screen::Screen;
-use crate::{Cancelled, CostModel};
 
 /// Pairs that are looked at between two reports: a few milliseconds.
 const PAIRS_PER_REPORT: usize = 1 << 18;
 
+/// The part of the cost model that the published method knows: t_P + H ξ, from one distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GreedyModel {
+    /// In edge tests.
+    pub(crate) patch_test: f64,
+    /// In half the longest side of the mesh's box.
+    pub(crate) view_distance: f64,
+}
+
+impl GreedyModel {
+    #[cfg(test)]
+    pub(crate) const PAPER: Self = Self { patch_test: 1.363, view_distance: 10.0 };
+
+    pub(crate) fn patch(&self, acceptance: f64, edges: usize) -> f64 {
+        self.patch_test + acceptance * edges as f64
+    }
+}
+
 /// What [`fuse_greedily`] minimises, and how many partners a cluster remembers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    pub(crate) model: CostModel,
+    pub(crate) model: GreedyModel,
     pub(crate) cache_size: usize,
 }
 
@@ -288,7 +306,7 @@ mod tests {
 
     /// Algorithm 1 without memory and without a quick look: each pair is compared exactly, and at
     /// every step the best of all is fused.
-    fn fuse_plainly<E: Extent>(edges: &[EdgeShape], model: &CostModel) -> Vec<Cluster<E>> {
+    fn fuse_plainly<E: Extent>(edges: &[EdgeShape], model: &GreedyModel) -> Vec<Cluster<E>> {
         let mut clusters: Vec<Option<Cluster<E>>> = Vec::new();
         let mut pairs: Vec<Pair> = Vec::new();
         let add = |cluster: Cluster<E>, clusters: &mut Vec<Option<_>>, pairs: &mut Vec<Pair>| {
@@ -313,7 +331,7 @@ mod tests {
     }
 
     #[track_caller]
-    fn check<E: Extent>(mesh: &Mesh, model: CostModel, cache_size: usize) {
+    fn check<E: Extent>(mesh: &Mesh, model: GreedyModel, cache_size: usize) {
         let mut edges = shapes_of_edges(mesh);
         edges.truncate(200);
         let settings = Settings { model, cache_size };
@@ -330,10 +348,10 @@ mod tests {
     fn shortcuts_change_nothing() {
         for name in ["bumpy-sphere", "torus-knot", "cad-part", "sliver-sphere", "book"] {
             let mesh = shapes::by_name(name, 90).unwrap();
-            check::<ReducedExtent>(&mesh, CostModel::PAPER, 50);
-            check::<MeanExtent>(&mesh, CostModel::PAPER, 50);
-            check::<ReducedExtent>(&mesh, CostModel::PAPER, 1);
-            let near = CostModel { patch_test: 3.0, view_distance: 1.5 };
+            check::<ReducedExtent>(&mesh, GreedyModel::PAPER, 50);
+            check::<MeanExtent>(&mesh, GreedyModel::PAPER, 50);
+            check::<ReducedExtent>(&mesh, GreedyModel::PAPER, 1);
+            let near = GreedyModel { patch_test: 3.0, view_distance: 1.5 };
             check::<ReducedExtent>(&mesh, near, 4);
             check::<MeanExtent>(&mesh, near, 4);
         }

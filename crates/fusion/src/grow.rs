@@ -8,7 +8,7 @@ use crate::geometry::Frame;
 use crate::greedy::{Settings, fuse_greedily};
 use crate::partition::{Placed, split_in_space};
 use crate::progress::Counter;
-use crate::{Cancelled, FusionParams, SphereKind};
+use crate::{Cancelled, SphereKind};
 
 /// Edges that are worth culling together, and those that are not.
 #[derive(Debug, Default)]
@@ -19,31 +19,36 @@ pub(crate) struct Grown {
     pub(crate) always_tested: Vec<EdgeId>,
 }
 
-/// Groups `edges`.
-pub(crate) fn grow(
+/// What the published method needs to know.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Published {
+    pub(crate) sphere: SphereKind,
+    pub(crate) settings: Settings,
+    pub(crate) max_partition: Option<u32>,
+}
+
+/// Groups `edges`, all of which have a shape, by the published method.
+pub(crate) fn grow_greedily(
     frame: &Frame,
-    edges: Vec<EdgeId>,
-    params: &FusionParams,
+    edges: &[EdgeId],
+    method: Published,
     counter: &Counter,
 ) -> Result<Grown, Cancelled> {
-    let (fusible, without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
-        edges.into_par_iter().partition(|&edge| frame.shape(edge).is_some());
-    counter.count(2 * without_shape.len())?;
     let mut placed: Vec<Placed> =
-        fusible.iter().map(|&edge| Placed { edge, midpoint: frame.midpoint(edge) }).collect();
-    let most = params.max_partition.map_or(usize::MAX, |most| most as usize);
+        edges.iter().map(|&edge| Placed { edge, midpoint: frame.midpoint(edge) }).collect();
+    let most = method.max_partition.map_or(usize::MAX, |most| most as usize);
     let parts = split_in_space(&mut placed, most);
     counter.count(0)?;
 
-    let grow_part = match params.sphere {
+    let grow_part = match method.sphere {
         SphereKind::Mean => grow_part::<MeanExtent>,
         SphereKind::Reduced => grow_part::<ReducedExtent>,
     };
     let grown: Vec<Grown> = parts
         .par_iter()
-        .map(|part| grow_part(frame, part, params, counter))
+        .map(|part| grow_part(frame, part, method.settings, counter))
         .collect::<Result<_, _>>()?;
-    let mut all = Grown { patches: Vec::new(), always_tested: without_shape };
+    let mut all = Grown::default();
     for mut part in grown {
         all.patches.append(&mut part.patches);
         all.always_tested.append(&mut part.always_tested);
@@ -54,13 +59,12 @@ pub(crate) fn grow(
 fn grow_part<E: Extent>(
     frame: &Frame,
     part: &[EdgeId],
-    params: &FusionParams,
+    settings: Settings,
     counter: &Counter,
 ) -> Result<Grown, Cancelled> {
     counter.check()?;
     let shapes: Vec<_> = part.iter().filter_map(|&edge| frame.shape(edge)).collect();
     debug_assert_eq!(shapes.len(), part.len(), "edges without a shape are in no part");
-    let settings = Settings { model: params.cost, cache_size: params.cache_size.max(1) as usize };
     let clusters = fuse_greedily::<E>(&shapes, settings, &|steps| counter.count(steps))?;
     counter.count(clusters.len())?;
 

@@ -36,6 +36,7 @@
 
 mod cluster;
 mod columns;
+mod cost;
 mod extent;
 mod file;
 mod fuse;
@@ -50,9 +51,10 @@ mod progress;
 mod screen;
 mod validate;
 
+pub use cost::{CostModel, VIEW_DISTANCES, ViewProfile};
 pub use file::PatchFileError;
 pub use fuse::fuse;
-pub use params::{CostModel, FusionParams, SphereKind};
-pub use patch_set::{Patch, PatchSet, Provenance, Summary, mesh_hash};
+pub use params::{BoundKind, FusionParams, Levels, Method, SphereKind};
+pub use patch_set::{Patch, PatchSet, Provenance, Summary, SuperPatch, mesh_hash};
 pub use progress::{Cancelled, Progress};
 pub use validate::InvalidPatches;

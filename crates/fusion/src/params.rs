@@ -1,29 +1,28 @@
 //! What is minimised, and how far the search goes.
 
-/// What a patch costs, in the time that one edge test takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CostModel {
-    /// Time of one patch test, in edge tests; above 0. More makes patches larger.
-    pub patch_test: f64,
-    /// Distance of the viewpoints that patches are tuned for, in units of half the longest side of
-    /// the mesh's box, from the center of each patch; above 0. Viewpoints lie that far away in any
-    /// direction. Less makes patches rounder and pays when the viewer stands close.
-    pub view_distance: f64,
+use crate::{CostModel, ViewProfile};
+
+/// What bounds the planes of a patch. All become the same [`DoubleCone`](drypoint_bounds::DoubleCone)
+/// and cost the same at run time; they differ in how much they cull.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum BoundKind {
+    /// A cone around the mean normal, and a sphere around the mean of the distinct vertices, through
+    /// the farthest vertex (Johnson and Cohen, I3D 2001).
+    Mean = 0,
+    /// A cone around the mean normal, and a sphere around the mean of the edges' midpoints, to the
+    /// farthest supporting line (Tsiapkolis and Bénard, CGF 2024, §3.1).
+    Reduced = 1,
+    /// The narrowest cone (Barequet and Elber, 2005), and the smallest sphere that touches every
+    /// supporting line.
+    Minimal = 2,
+    /// The narrowest cone, and the smallest distance between its two apexes that holds the planes
+    /// themselves, with no sphere in between: never looser than the others about the same axis line.
+    #[default]
+    Tight = 3,
 }
 
-impl CostModel {
-    /// As Tsiapkolis and Bénard measured it on their GPU and chose it (CGF 2024, §4.2).
-    pub const PAPER: Self = Self { patch_test: 1.363, view_distance: 10.0 };
-
-    /// Expected cost E of a view of a patch of `edges` edges that survives with probability
-    /// `acceptance`, in edge tests: t_P + H t_e ξ.
-    pub fn patch(&self, acceptance: f64, edges: usize) -> f64 {
-        self.patch_test + acceptance * edges as f64
-    }
-}
-
-/// Which sphere bounds the place of a patch's planes. Every sphere touches the supporting line of
-/// every edge.
+/// Which sphere the published method measures patches by while it grows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum SphereKind {
@@ -36,33 +35,96 @@ pub enum SphereKind {
     Reduced = 1,
 }
 
+/// Whether patches are grouped once more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Levels {
+    /// Every patch is tested from everywhere.
+    #[default]
+    One = 1,
+    /// Patches are grouped into super-patches, and only those of surviving super-patches are
+    /// tested.
+    Two = 2,
+}
+
+/// How patches are grown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// The published method: in each part of space, the two patches that gain most are fused, as
+    /// long as any gain (Tsiapkolis and Bénard, CGF 2024, Algorithm 1). It counts patch tests and
+    /// edges, and leaves the rest of the cost model out of account.
+    Greedy {
+        /// The sphere that patches are measured by.
+        sphere: SphereKind,
+        /// How many of its best partners a patch remembers, from 1; 0 counts as 1. Changes the time
+        /// and the memory (16 bytes a partner), never the result.
+        cache_size: u32,
+        /// Most edges that are fused with each other; `None`: all. The box is halved until no part
+        /// holds more. Time grows with it, linearly, and patches end at the cuts: TB24's Table 1
+        /// goes from 512 to 16384.
+        max_partition: Option<u32>,
+    },
+    /// Ours: patches grow in the space of planes, where what is culled together lies together, and
+    /// are then refined edge by edge.
+    Planes {
+        /// Most clusters that are compared with each other at a time; from 8. Time grows with it,
+        /// linearly.
+        cell: u32,
+        /// How often edges may move to a patch where they cost less.
+        sweeps: u32,
+    },
+}
+
 /// How [`fuse`](crate::fuse) grows patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FusionParams {
-    /// The sphere that bounds each patch.
-    pub sphere: SphereKind,
+    /// What bounds each patch.
+    pub bound: BoundKind,
     /// What is minimised.
     pub cost: CostModel,
-    /// How many of its best partners a patch remembers, from 1; 0 counts as 1. Changes the time
-    /// and the memory (16 bytes a partner), never the result.
-    pub cache_size: u32,
-    /// Most edges that are fused with each other; `None`: all. The box is halved until no part
-    /// holds more. Time grows with it, linearly, and patches end at the cuts: TB24's Table 1 goes
-    /// from 512 to 16384.
-    pub max_partition: Option<u32>,
+    /// For whom: from how far away the mesh is looked at.
+    pub views: ViewProfile,
+    /// How patches are grown.
+    pub method: Method,
+    /// Whether patches are grouped once more.
+    pub levels: Levels,
 }
 
 impl FusionParams {
     /// The published method: Tsiapkolis and Bénard, CGF 2024, with Reduced spheres.
     pub const PAPER: Self = Self {
-        sphere: SphereKind::Reduced,
+        bound: BoundKind::Reduced,
         cost: CostModel::PAPER,
-        cache_size: 50,
-        max_partition: Some(4096),
+        views: ViewProfile::PAPER,
+        method: Method::Greedy {
+            sphere: SphereKind::Reduced,
+            cache_size: 50,
+            max_partition: Some(4096),
+        },
+        levels: Levels::One,
     };
 
     /// The published method with Mean spheres.
-    pub const PAPER_MEAN: Self = Self { sphere: SphereKind::Mean, ..Self::PAPER };
+    pub const PAPER_MEAN: Self = Self {
+        bound: BoundKind::Mean,
+        method: Method::Greedy {
+            sphere: SphereKind::Mean,
+            cache_size: 50,
+            max_partition: Some(4096),
+        },
+        ..Self::PAPER
+    };
+
+    /// These, with another limit on the parts of the published method; our own has no parts.
+    #[must_use]
+    pub const fn with_max_partition(self, max_partition: Option<u32>) -> Self {
+        match self.method {
+            Method::Greedy { sphere, cache_size, .. } => {
+                Self { method: Method::Greedy { sphere, cache_size, max_partition }, ..self }
+            }
+            Method::Planes { .. } => self,
+        }
+    }
 }
 
 impl Default for FusionParams {

@@ -30,6 +30,25 @@ impl Patch {
     }
 }
 
+/// Patches that are culled together. 40 bytes, as [`Patch`].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SuperPatch {
+    /// Bounds both faces' planes of each edge of its patches.
+    pub bound: DoubleCone,
+    /// Index of the first patch.
+    pub first_patch: u32,
+    /// Number of patches, at least 1.
+    pub patch_count: u32,
+}
+
+impl SuperPatch {
+    /// Indices of its patches.
+    pub fn patches(&self) -> Range<u32> {
+        self.first_patch..self.first_patch.saturating_add(self.patch_count)
+    }
+}
+
 /// What a [`PatchSet`] was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Provenance {
@@ -39,7 +58,7 @@ pub struct Provenance {
     pub filter: EdgeFilter,
     /// [`mesh_hash`] of the mesh.
     pub mesh_hash: u64,
-    /// Half the longest side of the mesh's box, in model units: what `view_distance` is measured
+    /// Half the longest side of the mesh's box, in model units: what view distances are measured
     /// in. 0 if the mesh has no extent.
     pub unit: f64,
 }
@@ -68,6 +87,7 @@ pub struct Summary {
 /// is finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchSet {
+    pub(crate) super_patches: Vec<SuperPatch>,
     pub(crate) patches: Vec<Patch>,
     pub(crate) wings: Vec<Wing>,
     pub(crate) edge_ids: Vec<EdgeId>,
@@ -80,6 +100,21 @@ impl PatchSet {
     /// Patches, in order of their edges' places.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
+    }
+
+    /// Super-patches, in order of their patches; empty unless it was made with
+    /// [`Levels::Two`](crate::Levels::Two). They follow one another without a gap from patch 0.
+    pub fn super_patches(&self) -> &[SuperPatch] {
+        &self.super_patches
+    }
+
+    /// Indices of the patches that no super-patch holds, which are tested from everywhere: all of
+    /// them if there is no second level.
+    pub fn always_tested_patches(&self) -> Range<u32> {
+        let first = self.super_patches.last().map_or(0, |patch| patch.patches().end);
+        #[expect(clippy::cast_possible_truncation, reason = "a patch holds an edge")]
+        let end = self.patches.len() as u32;
+        first..end
     }
 
     /// Vertices of each edge; all four exist.
@@ -121,15 +156,21 @@ impl PatchSet {
         self.provenance.filter
     }
 
-    /// Expected cost of a view in edge tests, by the cost model that it was made for: over patches
-    /// t_P + H ξ, and 1 for each edge that is always tested (Tsiapkolis and Bénard, CGF 2024, §3).
+    /// Expected cost of a view in edge tests, by the cost model and the view profile that it was
+    /// made for: E of each patch, 1 for each edge that is always tested, t_P for each super-patch,
+    /// less t_P for each patch of those that are culled.
     pub fn expected_cost(&self) -> f64 {
-        let model = self.provenance.params.cost;
-        let distance = model.view_distance * self.provenance.unit;
-        let patch_cost = |patch: &Patch| {
-            model.patch(patch.bound.acceptance(distance), patch.edge_count as usize)
+        let FusionParams { cost, views, .. } = self.provenance.params;
+        let acceptance = |bound: &DoubleCone| views.acceptance(bound, self.provenance.unit);
+        let patch_cost =
+            |patch: &Patch| cost.patch(acceptance(&patch.bound), patch.edge_count as usize);
+        // Patches of a culled super-patch are not tested.
+        let saved = |group: &SuperPatch| {
+            let untested = (1.0 - acceptance(&group.bound)) * f64::from(group.patch_count);
+            cost.patch_test * (untested - 1.0)
         };
         self.patches.iter().map(patch_cost).sum::<f64>() + self.always_tested().len() as f64
+            - self.super_patches.iter().map(saved).sum::<f64>()
     }
 
     /// Statistics of the bounds.

@@ -2,9 +2,9 @@
 
 use std::marker::PhantomData;
 
-use crate::CostModel;
 use crate::cluster::{Outline, most_gain};
 use crate::extent::Extent;
+use crate::greedy::GreedyModel;
 use crate::lanes::{LANES, Lanes, Number};
 
 /// The live clusters, densely packed in no particular order.
@@ -56,7 +56,7 @@ impl<E: Extent> Screen<E> {
 
     /// Replaces `most` by the most that fusing each cluster with this live one may gain, by place;
     /// at least the exact gain, rounding included.
-    pub(crate) fn most_gains(&self, number: u32, model: &CostModel, most: &mut Vec<f64>) {
+    pub(crate) fn most_gains(&self, number: u32, model: &GreedyModel, most: &mut Vec<f64>) {
         let own = self.get(self.places[number as usize] as usize).map(Lanes::of);
         most.clear();
         for block in &self.blocks {

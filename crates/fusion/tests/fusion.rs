@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use drypoint_fusion::{
-    Cancelled, CostModel, FusionParams, InvalidPatches, PatchSet, Progress, SphereKind, fuse,
+    Cancelled, CostModel, FusionParams, InvalidPatches, Method, PatchSet, Progress, SphereKind,
+    ViewProfile, fuse,
 };
 use drypoint_mesh::{
     EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges, is_contour, shapes,
@@ -16,16 +17,25 @@ use glam::{DVec3, Vec3};
 const ALL_PARAMS: [FusionParams; 8] = [
     FusionParams::PAPER,
     FusionParams::PAPER_MEAN,
-    FusionParams { max_partition: None, ..FusionParams::PAPER },
-    FusionParams { max_partition: Some(64), cache_size: 3, ..FusionParams::PAPER_MEAN },
-    FusionParams { max_partition: Some(0), cache_size: 0, ..FusionParams::PAPER },
+    FusionParams::PAPER.with_max_partition(None),
+    greedy(SphereKind::Mean, 3, Some(64)),
+    greedy(SphereKind::Reduced, 0, Some(0)),
     with_cost(0.5, 1.0),
     with_cost(20.0, 1000.0),
     with_cost(f64::NAN, f64::NAN),
 ];
 
 const fn with_cost(patch_test: f64, view_distance: f64) -> FusionParams {
-    FusionParams { cost: CostModel { patch_test, view_distance }, ..FusionParams::PAPER }
+    FusionParams {
+        cost: CostModel { patch_test, ..CostModel::PAPER },
+        views: ViewProfile::at(view_distance),
+        ..FusionParams::PAPER
+    }
+}
+
+const fn greedy(sphere: SphereKind, cache_size: u32, max_partition: Option<u32>) -> FusionParams {
+    let method = Method::Greedy { sphere, cache_size, max_partition };
+    FusionParams { method, ..FusionParams::PAPER }
 }
 
 const FILTERS: [EdgeFilter; 2] = [EdgeFilter::Convex, EdgeFilter::All];
@@ -157,11 +167,11 @@ fn a_ball_is_mostly_culled() {
 /// A patch that is dearer than its edges is none: they are always tested.
 #[test]
 fn no_patch_is_in_vain() {
-    let params = FusionParams { max_partition: Some(40), ..FusionParams::PAPER };
+    let params = FusionParams::PAPER.with_max_partition(Some(40));
     let set = fuse_silently(&shapes::bumpy_sphere(3_000), EdgeFilter::Convex, &params);
-    let distance = params.cost.view_distance * set.provenance().unit;
     for patch in set.patches() {
-        let expected = params.cost.patch(patch.bound.acceptance(distance), patch.edges().len());
+        let acceptance = params.views.acceptance(&patch.bound, set.provenance().unit);
+        let expected = params.cost.patch(acceptance, patch.edges().len());
         assert!(expected < f64::from(patch.edge_count) + 1e-3);
     }
     assert!(!set.always_tested().is_empty());
@@ -171,7 +181,7 @@ fn no_patch_is_in_vain() {
 fn any_number_of_threads_makes_the_same_bytes() {
     let mesh = shapes::bumpy_sphere(4_000);
     for sphere in [SphereKind::Mean, SphereKind::Reduced] {
-        let params = FusionParams { sphere, max_partition: Some(256), ..FusionParams::PAPER };
+        let params = greedy(sphere, 50, Some(256));
         let with_threads = |count| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
             pool.install(|| fuse_silently(&mesh, EdgeFilter::Convex, &params).to_bytes())
@@ -184,7 +194,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
 fn the_memory_of_partners_changes_nothing() {
     let mesh = shapes::torus_knot(1_500);
     let with_cache = |cache_size| {
-        let params = FusionParams { cache_size, ..FusionParams::PAPER };
+        let params = greedy(SphereKind::Reduced, cache_size, Some(4096));
         let set = fuse_silently(&mesh, EdgeFilter::All, &params);
         (set.patches().to_vec(), set.edge_ids().to_vec())
     };
@@ -198,7 +208,7 @@ fn the_memory_of_partners_changes_nothing() {
 fn progress_comes_to_an_end() {
     let mesh = shapes::bumpy_sphere(3_000);
     let adjacency = MeshAdjacency::new(&mesh);
-    let params = FusionParams { max_partition: Some(500), ..FusionParams::PAPER };
+    let params = FusionParams::PAPER.with_max_partition(Some(500));
     let (calls, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let edges = adjacency.edges(EdgeFilter::Convex).count();
     let on_progress = |progress: Progress| {
@@ -217,7 +227,7 @@ fn progress_comes_to_an_end() {
 fn a_break_ends_it_at_once() {
     let mesh = shapes::bumpy_sphere(60_000);
     let adjacency = MeshAdjacency::new(&mesh);
-    let params = FusionParams { max_partition: None, ..FusionParams::PAPER };
+    let params = FusionParams::PAPER.with_max_partition(None);
     for last in [0, 1, 20] {
         let calls = AtomicUsize::new(0);
         let stopped = std::sync::OnceLock::new();

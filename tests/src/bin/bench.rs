@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use drypoint_cpu::{BruteForce, extract_patches};
-use drypoint_fusion::{FusionParams, PatchSet, SphereKind, fuse};
+use drypoint_fusion::{FusionParams, PatchSet, fuse};
 use drypoint_lines::{
     Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams,
     filter_for_drawing, to_svg,
@@ -92,9 +92,8 @@ fn measure(mesh: &Mesh, options: &Options) -> Result<(), String> {
     let adjacency = MeshAdjacency::new(mesh);
     println!("  adjacency {:.3} s", start.elapsed().as_secs_f64());
     draw(mesh, &adjacency)?;
-    for (name, sphere) in [("reduced", SphereKind::Reduced), ("mean", SphereKind::Mean)] {
-        let params =
-            FusionParams { sphere, max_partition: Some(options.partition), ..FusionParams::PAPER };
+    for (name, params) in [("reduced", FusionParams::PAPER), ("mean", FusionParams::PAPER_MEAN)] {
+        let params = params.with_max_partition(Some(options.partition));
         let start = Instant::now();
         let go_on = |_| ControlFlow::Continue(());
         let patches = fuse(mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)

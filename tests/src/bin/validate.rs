@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use drypoint_fusion::{FusionParams, SphereKind, fuse};
+use drypoint_fusion::{FusionParams, fuse};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, io, shapes};
 use drypoint_tests::compare::{Agreement, Disagreement, compare};
 use drypoint_tests::{models, viewpoints};
@@ -79,8 +79,7 @@ fn run(options: &Options) -> Result<(), String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if name.contains(&options.only) {
             let model = io::read(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-            let max_partition = Some(options.partition);
-            let params = FusionParams { max_partition, ..FusionParams::PAPER };
+            let params = FusionParams::PAPER.with_max_partition(Some(options.partition));
             validate((&name, &model.mesh), &params, &mut total)?;
         }
     }
@@ -94,13 +93,8 @@ fn run(options: &Options) -> Result<(), String> {
 /// On shapes, which are small: both spheres, and parts of space from small to whole.
 fn presets() -> [FusionParams; 4] {
     let reduced = FusionParams::PAPER;
-    let mean = FusionParams { sphere: SphereKind::Mean, ..reduced };
-    [
-        reduced,
-        mean,
-        FusionParams { max_partition: Some(128), ..reduced },
-        FusionParams { max_partition: None, ..mean },
-    ]
+    let mean = FusionParams::PAPER_MEAN;
+    [reduced, mean, reduced.with_max_partition(Some(128)), mean.with_max_partition(None)]
 }
 
 fn validate(
