@@ -36,6 +36,24 @@ impl CostModel {
         max_vertices: u32::MAX,
     };
 
+    /// The scalar reference path of `drypoint-cpu`.
+    pub const CPU_SCALAR: Self = Self { patch_test: 0.3, accepted_patch: 0.3, ..Self::PAPER };
+
+    /// Edges in blocks of 16, as AVX-512 tests them.
+    pub const CPU_SIMD: Self =
+        Self { patch_test: 2.0, accepted_patch: 20.0, block: 16, ..Self::PAPER };
+
+    /// A compute shader with workgroups of 32, one per block of a survivor.
+    pub const GPU_32: Self = Self { accepted_patch: 4.0, block: 32, ..Self::PAPER };
+
+    /// A compute shader with workgroups of 64, one per block of a survivor.
+    pub const GPU_64: Self = Self { accepted_patch: 4.0, block: 64, ..Self::PAPER };
+
+    /// A mesh shader workgroup per survivor, which emits at most 64 vertices and 126 primitives
+    /// (Tsiapkolis and Bénard, CGF 2024, §4.4).
+    pub const MESH_SHADER: Self =
+        Self { block: 32, accepted_patch: 4.0, max_edges: 126, max_vertices: 64, ..Self::PAPER };
+
     /// Cost E of a patch of `edges` edges that survives with probability `acceptance`, in edge
     /// tests.
     pub fn patch(&self, acceptance: f64, edges: usize) -> f64 {
@@ -66,6 +84,13 @@ pub struct ViewProfile {
 impl ViewProfile {
     /// The one distance for which Tsiapkolis and Bénard tune patches (CGF 2024, §4.2).
     pub const PAPER: Self = Self::at(10.0);
+
+    /// Models that are looked at as a whole.
+    pub const FAR: Self = Self::PAPER;
+
+    /// Models that are walked through or looked at from close by.
+    pub const NEAR: Self =
+        Self { distances: [0.5, 1.0, 2.0, 10.0], weights: [0.25, 0.25, 0.25, 0.25] };
 
     /// One distance.
     pub const fn at(distance: f64) -> Self {

@@ -91,6 +91,22 @@ pub struct FusionParams {
 }
 
 impl FusionParams {
+    /// For building while a model is loaded.
+    pub const FAST: Self = Self {
+        bound: BoundKind::Tight,
+        cost: CostModel::PAPER,
+        views: ViewProfile::PAPER,
+        method: Method::Planes { cell: 64, sweeps: 0 },
+        levels: Levels::One,
+    };
+
+    /// For building once and viewing often.
+    pub const DEFAULT: Self =
+        Self { method: Method::Planes { cell: 128, sweeps: 2 }, ..Self::FAST };
+
+    /// For an asset that is shipped: the last percent takes most of the time.
+    pub const BEST: Self = Self { method: Method::Planes { cell: 256, sweeps: 8 }, ..Self::FAST };
+
     /// The published method: Tsiapkolis and Bénard, CGF 2024, with Reduced spheres.
     pub const PAPER: Self = Self {
         bound: BoundKind::Reduced,
@@ -129,6 +145,6 @@ impl FusionParams {
 
 impl Default for FusionParams {
     fn default() -> Self {
-        Self::PAPER
+        Self::DEFAULT
     }
 }
