@@ -2,18 +2,17 @@
 
 use std::ops::ControlFlow;
 
-use drypoint_bounds::{DoubleCone, NormalCone, SpatializedNormalCone, Sphere};
+use drypoint_bounds::DoubleCone;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency};
-use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::bound::bound;
 use crate::geometry::Frame;
 use crate::greedy::{GreedyModel, Settings};
 use crate::grow::{Grown, Published, grow_greedily};
 use crate::progress::Counter;
 use crate::{
-    BoundKind, Cancelled, FusionParams, Method, Patch, PatchSet, Progress, Provenance, SphereKind,
-    mesh_hash,
+    Cancelled, FusionParams, Method, Patch, PatchSet, Progress, Provenance, SphereKind, mesh_hash,
 };
 
 /// Groups the edges of `mesh` that `filter` keeps into patches (Tsiapkolis and Bénard, CGF 2024,
@@ -102,27 +101,6 @@ fn grow(
     };
     grown.always_tested.append(&mut without_shape);
     Ok(grown)
-}
-
-/// The bound that goes with the patch, in model units.
-fn bound(frame: &Frame, edges: &[EdgeId], kind: BoundKind) -> DoubleCone {
-    let shapes: Vec<_> = edges.iter().filter_map(|&edge| frame.shape(edge)).collect();
-    let position = |vertex: u32| frame.mesh.position(vertex).as_dvec3();
-    let sphere = match kind {
-        BoundKind::Mean => {
-            let mut vertices: Vec<u32> = shapes.iter().flat_map(|edge| edge.vertices).collect();
-            vertices.sort_unstable();
-            vertices.dedup();
-            Sphere::mean(vertices.iter().map(|&vertex| position(vertex)))
-        }
-        _ => Sphere::reduced(shapes.iter().map(|e| e.vertices.map(position))),
-    };
-    let normals: Vec<DVec3> = shapes.iter().flat_map(|edge| edge.normals).collect();
-    let cone = match kind {
-        BoundKind::Mean | BoundKind::Reduced => NormalCone::mean(normals.iter().copied()),
-        BoundKind::Minimal | BoundKind::Tight => NormalCone::minimal(normals.iter().copied()),
-    };
-    DoubleCone::from(SpatializedNormalCone { cone, sphere })
 }
 
 /// Puts edges in the order of their patches, and those that are always tested behind them.
