@@ -3,7 +3,11 @@
 /// What an extraction did, in counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Patches whose bound was tested; 0 for brute force.
+    /// Super-patches whose bound was tested; 0 if there is no second level.
+    pub super_patches_tested: usize,
+    /// Super-patches that may hold a contour edge, so that their patches were tested.
+    pub super_patches_accepted: usize,
+    /// Patches whose bound was tested: not those of culled super-patches. 0 for brute force.
     pub patches_tested: usize,
     /// Survivors: patches that may hold a contour edge.
     pub patches_accepted: usize,

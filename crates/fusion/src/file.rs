@@ -241,7 +241,7 @@ impl PatchSet {
             classes: read_classes(section(bytes, &layout.classes))?,
             provenance: header.provenance()?,
         };
-        set.validate_structure()?;
+        set.content().validate()?;
         Ok(set)
     }
 }

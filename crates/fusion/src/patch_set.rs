@@ -8,7 +8,8 @@ use drypoint_mesh::{EdgeClass, EdgeFilter, EdgeId, Mesh, Wing};
 use glam::Vec3;
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::FusionParams;
+use crate::validate::Content;
+use crate::{FusionParams, InvalidPatches};
 
 /// Edges that are culled together. 40 bytes, all of them 4-byte numbers: in WGSL, a struct of
 /// scalars, since a `vec3f` would widen it to 48.
@@ -108,6 +109,24 @@ impl PatchSet {
         &self.super_patches
     }
 
+    /// The same patches under another second level, which replaces what was there; none if it is
+    /// empty. For groupings of one's own.
+    ///
+    /// Each bound must hold the planes of all edges of its patches. [`PatchSet::validate`] checks
+    /// that; this checks only that nothing is out of range. Linear.
+    ///
+    /// # Errors
+    /// The first thing that is wrong: super-patches must follow one another from patch 0, hold a
+    /// patch each, and have finite bounds.
+    pub fn with_super_patches(
+        self,
+        super_patches: Vec<SuperPatch>,
+    ) -> Result<Self, InvalidPatches> {
+        let set = Self { super_patches, ..self };
+        set.content().validate()?;
+        Ok(set)
+    }
+
     /// Indices of the patches that no super-patch holds, which are tested from everywhere: all of
     /// them if there is no second level.
     pub fn always_tested_patches(&self) -> Range<u32> {
@@ -144,6 +163,17 @@ impl PatchSet {
     /// The mesh's vertices, which wings name, in the order of its file.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
+    }
+
+    pub(crate) fn content(&self) -> Content<'_> {
+        Content {
+            super_patches: &self.super_patches,
+            patches: &self.patches,
+            wings: &self.wings,
+            edge_ids: &self.edge_ids,
+            classes: &self.classes,
+            positions: &self.positions,
+        }
     }
 
     /// What it was made from.

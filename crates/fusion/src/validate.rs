@@ -1,9 +1,10 @@
 //! What a [`PatchSet`] promises, checked without the code that makes it.
 
-use drypoint_mesh::{EdgeId, Mesh, MeshAdjacency};
-use glam::DVec3;
+use drypoint_bounds::DoubleCone;
+use drypoint_mesh::{EdgeClass, EdgeId, Mesh, MeshAdjacency, Wing};
+use glam::{DVec3, Vec3};
 
-use crate::{Patch, PatchSet, mesh_hash};
+use crate::{Patch, PatchSet, SuperPatch, mesh_hash};
 
 /// What is wrong with a [`PatchSet`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -34,6 +35,23 @@ pub enum InvalidPatches {
         /// Number of edges.
         edges: usize,
     },
+    /// A super-patch does not begin where the one before ends, holds no patch, or ends beyond the
+    /// last.
+    #[error(
+        "super-patch {super_patch} holds {patch_count} patches from {first_patch}, and not at least 1 from {expected} to {patches}"
+    )]
+    SuperRange {
+        /// Index of the super-patch.
+        super_patch: usize,
+        /// Where it begins.
+        first_patch: u32,
+        /// How many patches it claims.
+        patch_count: u32,
+        /// Where it should begin.
+        expected: u32,
+        /// Number of patches.
+        patches: usize,
+    },
     /// A wing names a vertex that does not exist.
     #[error("edge {place} uses vertex {vertex}, but there are only {vertex_count}")]
     VertexOutOfRange {
@@ -56,6 +74,12 @@ pub enum InvalidPatches {
         /// Index of the patch.
         patch: usize,
     },
+    /// A super-patch's bound is NaN or infinite, or has a negative size.
+    #[error("the bound of super-patch {super_patch} is not finite")]
+    SuperBoundNotFinite {
+        /// Index of the super-patch.
+        super_patch: usize,
+    },
     /// An edge is there twice.
     #[error("edge id {} appears twice", edge.0)]
     DuplicateEdge {
@@ -67,6 +91,14 @@ pub enum InvalidPatches {
     PlaneOutsideBound {
         /// Index of the patch.
         patch: usize,
+        /// Place of the edge.
+        place: usize,
+    },
+    /// The plane of a face beside an edge is not within the bound of the edge's super-patch.
+    #[error("a face beside edge {place} is not within the bound of super-patch {super_patch}")]
+    PlaneOutsideSuperBound {
+        /// Index of the super-patch.
+        super_patch: usize,
         /// Place of the edge.
         place: usize,
     },
@@ -82,24 +114,31 @@ pub enum InvalidPatches {
 }
 
 impl PatchSet {
-    /// Checks all that can be checked without the mesh: patches follow one another, every edge is
-    /// there once, every number is finite, and both faces' planes of every edge are within the
-    /// bound of its patch. Linear, but for a sort of the ids.
+    /// Checks all that can be checked without the mesh: patches follow one another, and so do
+    /// super-patches, every edge is there once, every number is finite, and both faces' planes of
+    /// every edge are within the bounds of its patch and its super-patch. Linear, but for a sort of
+    /// the ids.
     ///
     /// # Errors
     /// The first thing that is wrong.
     pub fn validate(&self) -> Result<(), InvalidPatches> {
-        self.validate_structure()?;
+        self.content().validate()?;
         let mut ids = self.edge_ids.clone();
         ids.sort_unstable();
         if let Some(pair) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(InvalidPatches::DuplicateEdge { edge: pair[0] });
         }
         for (index, patch) in self.patches.iter().enumerate() {
-            for place in patch.edges().map(|place| place as usize) {
-                if !self.is_within_bound(place, patch) {
-                    return Err(InvalidPatches::PlaneOutsideBound { patch: index, place });
-                }
+            if let Some(place) = self.first_outside(&patch.bound, patch) {
+                return Err(InvalidPatches::PlaneOutsideBound { patch: index, place });
+            }
+        }
+        for (super_patch, group) in self.super_patches.iter().enumerate() {
+            let patches = group.patches();
+            let mut patches = self.patches[patches.start as usize..patches.end as usize].iter();
+            let outside = patches.find_map(|patch| self.first_outside(&group.bound, patch));
+            if let Some(place) = outside {
+                return Err(InvalidPatches::PlaneOutsideSuperBound { super_patch, place });
             }
         }
         Ok(())
@@ -137,8 +176,48 @@ impl PatchSet {
         }
     }
 
+    /// Place of the first edge of `patch` beside a face that is not within `bound`.
+    fn first_outside(&self, bound: &DoubleCone, patch: &Patch) -> Option<usize> {
+        let mut places = patch.edges().map(|place| place as usize);
+        places.find(|&place| !self.is_within_bound(place, bound))
+    }
+
+    /// Whether the normals of both faces are within α of the axis, and both planes cross the axis
+    /// line between the apexes: then no plane passes through either cone of viewpoints. What is
+    /// never culled holds everything.
+    fn is_within_bound(&self, place: usize, bound: &DoubleCone) -> bool {
+        if *bound == DoubleCone::ALWAYS {
+            return true;
+        }
+        let wing = self.wings[place];
+        let (center, axis) = (bound.center.as_dvec3(), bound.axis.as_dvec3());
+        [wing.left_face(), wing.right_face()].into_iter().all(|face| {
+            let [a, b, c] = face.map(|vertex| self.positions[vertex as usize].as_dvec3());
+            let normal = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
+            let Some(normal) = DVec3::try_normalize(normal) else { return false };
+            let (cos, sin) = (normal.dot(axis), normal.cross(axis).length());
+            let tan = f64::from(bound.tan_squared).sqrt();
+            cos > 0.0
+                && sin <= tan * cos
+                && normal.dot(a - center).abs() <= f64::from(bound.apex_distance) * cos
+        })
+    }
+}
+
+/// The lists of an asset, wherever they lie.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Content<'a> {
+    pub(crate) super_patches: &'a [SuperPatch],
+    pub(crate) patches: &'a [Patch],
+    pub(crate) wings: &'a [Wing],
+    pub(crate) edge_ids: &'a [EdgeId],
+    pub(crate) classes: &'a [EdgeClass],
+    pub(crate) positions: &'a [Vec3],
+}
+
+impl Content<'_> {
     /// What must hold for no reader to panic: lengths, ranges, vertices, finite numbers.
-    pub(crate) fn validate_structure(&self) -> Result<(), InvalidPatches> {
+    pub(crate) fn validate(&self) -> Result<(), InvalidPatches> {
         let edges = self.wings.len();
         if [self.edge_ids.len(), self.classes.len()] != [edges; 2] {
             return Err(InvalidPatches::Lengths {
@@ -147,31 +226,8 @@ impl PatchSet {
                 classes: self.classes.len(),
             });
         }
-        let mut expected = 0u32;
-        for (index, patch) in self.patches.iter().enumerate() {
-            let &Patch { bound, first_edge, edge_count } = patch;
-            let end = first_edge.checked_add(edge_count).filter(|&end| end as usize <= edges);
-            expected = match end {
-                Some(end) if first_edge == expected && edge_count > 0 => end,
-                _ => {
-                    let patch = index;
-                    return Err(InvalidPatches::Range {
-                        patch,
-                        first_edge,
-                        edge_count,
-                        expected,
-                        edges,
-                    });
-                }
-            };
-            let sizes = [bound.apex_distance, bound.tan_squared];
-            let is_finite = bound.center.is_finite()
-                && bound.axis.is_finite()
-                && sizes.iter().all(|&size| size.is_finite() && size >= 0.0);
-            if !is_finite {
-                return Err(InvalidPatches::BoundNotFinite { patch: index });
-            }
-        }
+        self.validate_patches()?;
+        self.validate_super_patches()?;
         let vertex_count = self.positions.len();
         for (place, wing) in self.wings.iter().enumerate() {
             let vertices = [wing.tail, wing.head, wing.left, wing.right];
@@ -185,23 +241,52 @@ impl PatchSet {
         }
     }
 
-    /// Whether the normals of both faces are within α of the axis, and both planes cross the axis
-    /// line between the apexes: then no plane passes through either cone of viewpoints.
-    fn is_within_bound(&self, place: usize, patch: &Patch) -> bool {
-        let wing = self.wings[place];
-        let bound = patch.bound;
-        let (center, axis) = (bound.center.as_dvec3(), bound.axis.as_dvec3());
-        [wing.left_face(), wing.right_face()].into_iter().all(|face| {
-            let [a, b, c] = face.map(|vertex| self.positions[vertex as usize].as_dvec3());
-            let normal = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
-            let Some(normal) = DVec3::try_normalize(normal) else { return false };
-            let (cos, sin) = (normal.dot(axis), normal.cross(axis).length());
-            let tan = f64::from(bound.tan_squared).sqrt();
-            cos > 0.0
-                && sin <= tan * cos
-                && normal.dot(a - center).abs() <= f64::from(bound.apex_distance) * cos
-        })
+    fn validate_patches(&self) -> Result<(), InvalidPatches> {
+        let edges = self.wings.len();
+        let mut expected = 0;
+        for (patch, &Patch { bound, first_edge, edge_count }) in self.patches.iter().enumerate() {
+            expected = end_of(expected, first_edge, edge_count, edges)
+                .ok_or(InvalidPatches::Range { patch, first_edge, edge_count, expected, edges })?;
+            if !is_finite(&bound) {
+                return Err(InvalidPatches::BoundNotFinite { patch });
+            }
+        }
+        Ok(())
     }
+
+    fn validate_super_patches(&self) -> Result<(), InvalidPatches> {
+        let patches = self.patches.len();
+        let mut expected = 0;
+        for (super_patch, group) in self.super_patches.iter().enumerate() {
+            let &SuperPatch { bound, first_patch, patch_count } = group;
+            expected = end_of(expected, first_patch, patch_count, patches).ok_or(
+                InvalidPatches::SuperRange {
+                    super_patch,
+                    first_patch,
+                    patch_count,
+                    expected,
+                    patches,
+                },
+            )?;
+            if !is_finite(&bound) {
+                return Err(InvalidPatches::SuperBoundNotFinite { super_patch });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where a range ends that should begin at `expected`, hold something, and end within `limit`.
+fn end_of(expected: u32, first: u32, count: u32, limit: usize) -> Option<u32> {
+    let end = first.checked_add(count).filter(|&end| end as usize <= limit);
+    end.filter(|_| first == expected && count > 0)
+}
+
+fn is_finite(bound: &DoubleCone) -> bool {
+    let sizes = [bound.apex_distance, bound.tan_squared];
+    bound.center.is_finite()
+        && bound.axis.is_finite()
+        && sizes.iter().all(|&size| size.is_finite() && size >= 0.0)
 }
 
 #[cfg(test)]
@@ -219,9 +304,18 @@ mod tests {
         let adjacency = MeshAdjacency::new(&mesh);
         let go_on = |_| ControlFlow::Continue(());
         let params = FusionParams::PAPER;
-        let mut set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on).unwrap();
+        let set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on).unwrap();
         assert_eq!((set.validate(), set.validate_against(&mesh, &adjacency)), (Ok(()), Ok(())));
         assert!(set.patches.len() > 4);
+        // Super-patches of one patch each; the rest of the patches are tested from everywhere.
+        let of_one = |(patch, first_patch): (&Patch, u32)| SuperPatch {
+            bound: patch.bound,
+            first_patch,
+            patch_count: 1,
+        };
+        let groups = set.patches.iter().zip(0..).map(of_one).take(3).collect();
+        let mut set = set.with_super_patches(groups).unwrap();
+        assert_eq!(set.validate(), Ok(()));
         break_it(&mut set);
         let error = set.validate().and_then(|()| set.validate_against(&mesh, &adjacency));
         assert!(error.is_err_and(&is_expected), "{error:?}");
@@ -258,6 +352,26 @@ mod tests {
         check(|set| set.patches[1].bound.axis.x = f32::NAN, is_bound);
         check(|set| set.patches[1].bound.tan_squared = -1.0, is_bound);
         check(|set| set.patches[1].bound.apex_distance = f32::NAN, is_bound);
+    }
+
+    #[test]
+    fn broken_super_patches_are_noticed() {
+        let is_range = |e| matches!(e, InvalidPatches::SuperRange { super_patch: 1, .. });
+        check(|set| set.super_patches[1].first_patch += 1, is_range);
+        check(|set| set.super_patches[1].patch_count = 0, is_range);
+        check(|set| set.super_patches[1].patch_count = u32::MAX, is_range);
+        check(|set| set.super_patches.swap(1, 2), is_range);
+        let is_bound = |e| e == InvalidPatches::SuperBoundNotFinite { super_patch: 2 };
+        check(|set| set.super_patches[2].bound.center.y = f32::NAN, is_bound);
+        check(|set| set.super_patches[2].bound.apex_distance = -1.0, is_bound);
+        let is_outside =
+            |e| matches!(e, InvalidPatches::PlaneOutsideSuperBound { super_patch: 1, .. });
+        check(|set| set.super_patches[1].bound.tan_squared *= 0.99, is_outside);
+        check(|set| set.super_patches[1].bound = set.patches[0].bound, is_outside);
+        check(
+            |set| set.super_patches.last_mut().unwrap().patch_count += 1,
+            |e| matches!(e, InvalidPatches::PlaneOutsideSuperBound { super_patch: 2, .. }),
+        );
     }
 
     #[test]
