@@ -1,59 +1,20 @@
-//! A [`PatchSet`] as bytes.
-//!
-//! All numbers are little-endian. A header of 256 bytes is followed by sections that each begin at
-//! a multiple of 256 bytes, the largest offset that a GPU asks of a storage buffer, so that a
-//! buffer can be filled from the file, or a binding point into it. What is between is zero.
-//!
-//! | offset | what |
-//! | --- | --- |
-//! | 0 | `DRYPATCH` |
-//! | 8 | version, u32: 1 |
-//! | 12 | edge filter, u32: 0 convex, 1 all |
-//! | 16 | XXH3-64 of every byte but these eight |
-//! | 24 | length of the file, u64 |
-//! | 32 | hash of the mesh, u64 |
-//! | 40 | unit of distances, f64 |
-//! | 48 | cost of a patch test, f64 |
-//! | 56 | view distance, f64 |
-//! | 64 | sphere, u32: 0 mean, 1 reduced |
-//! | 68 | cache size, u32 |
-//! | 72 | whether partitions are limited, u32: 0 or 1 |
-//! | 76 | most edges in a partition, u32 |
-//! | 80 | numbers of patches, edges, vertices, u32 each |
-//!
-//! Sections: patches ([`Patch`], 40 bytes each), wings (16), edge ids (4), positions (12), classes
-//! (1: 0 convex, 1 flat, 2 concave, 3 boundary, 4 non-manifold, 5 inconsistent).
+//! A [`PatchSet`] as bytes, and bytes as one.
 
 use std::io::{self, Write};
 use std::ops::Range;
 
-use bytemuck::Pod;
-use drypoint_mesh::{EdgeClass, EdgeFilter, EdgeId, Wing};
+use bytemuck::{CheckedBitPattern, checked};
+use drypoint_mesh::{EdgeClass, EdgeId, Wing};
 use glam::Vec3;
 use xxhash_rust::xxh3::Xxh3;
 
+use crate::header::{CHECKSUM, Fields, HEADER, Header, MAGIC, VERSION};
 use crate::patch_set::little_endian;
-use crate::{
-    BoundKind, CostModel, FusionParams, InvalidPatches, Levels, Method, Patch, PatchSet,
-    Provenance, SphereKind, SuperPatch, ViewProfile,
-};
+use crate::validate::Content;
+use crate::{InvalidPatches, Patch, PatchSet, Provenance, SuperPatch};
 
-const MAGIC: &[u8; 8] = b"DRYPATCH";
-const VERSION: u32 = 2;
-const HEADER: usize = 256;
 /// Of every section.
 const ALIGNMENT: usize = 256;
-const HASH: Range<usize> = 16..24;
-
-/// By code.
-const CLASSES: [EdgeClass; 6] = [
-    EdgeClass::Convex,
-    EdgeClass::Flat,
-    EdgeClass::Concave,
-    EdgeClass::Boundary,
-    EdgeClass::NonManifold,
-    EdgeClass::Inconsistent,
-];
 
 /// Why bytes are no [`PatchSet`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -61,10 +22,20 @@ pub enum PatchFileError {
     /// It does not begin as such a file does.
     #[error("this is no patches file")]
     Foreign,
-    /// Written by another version of this library, most likely a newer one.
-    #[error("the file has format version {found}; this program reads version {VERSION}")]
-    Version {
-        /// The version it says.
+    /// Written by a newer version of this library.
+    #[error(
+        "written by a newer version of Drypoint: the file has format {found}, this program reads up to {VERSION}"
+    )]
+    Newer {
+        /// The format it says.
+        found: u32,
+    },
+    /// Written by an older version of this library, in a format that is no longer read.
+    #[error(
+        "written by an older version of Drypoint: the file has format {found}, this program reads {VERSION}; build the patches again"
+    )]
+    Older {
+        /// The format it says.
         found: u32,
     },
     /// It ends too early.
@@ -81,18 +52,235 @@ pub enum PatchFileError {
         /// How many.
         extra: u64,
     },
+    /// The bytes do not begin at a multiple of 4, so that no number can be read in place.
+    #[error("the bytes do not begin at a multiple of 4 in memory")]
+    Misaligned,
+    /// This machine stores numbers the other way round.
+    #[error("patches files are little-endian, and this machine is not")]
+    BigEndian,
     /// Bytes have changed since it was written.
     #[error("the file is corrupt: its checksum does not match")]
     Corrupt,
-    /// A code or a count that no writer of this version would write.
+    /// A code or a number that no writer of this version would write.
     #[error("the file's header makes no sense: {field}")]
     Header {
         /// What makes no sense.
         field: &'static str,
     },
+    /// A code that stands for no [`EdgeClass`].
+    #[error("the file's content makes no sense: an edge has an unknown class")]
+    UnknownClass,
+    /// What lies between two sections is not zero.
+    #[error("the file's content makes no sense: byte {offset} belongs to nothing and is not zero")]
+    Padding {
+        /// Where, from the beginning of the file.
+        offset: u64,
+    },
     /// The content contradicts itself.
     #[error("the file's content makes no sense: {0}")]
     Invalid(#[from] InvalidPatches),
+}
+
+/// A patches file, read in place: its lists are slices of the bytes, nothing is copied, and a GPU
+/// buffer can be filled from them as they are. The bytes may be mapped from a file.
+///
+/// # Format
+///
+/// All numbers are little-endian. A header of 256 bytes is followed by sections that each begin at
+/// a multiple of 256 bytes, the largest offset that a GPU asks of a storage buffer, so that a
+/// buffer can be filled from the file, or a binding point into it. What is between is zero.
+///
+/// | offset | what |
+/// | --- | --- |
+/// | 0 | `DRYPATCH` |
+/// | 8 | version, u32: 2 |
+/// | 12 | edge filter, u32: 0 convex, 1 all |
+/// | 16 | XXH3-64 of every byte but these eight |
+/// | 24 | length of the file, u64 |
+/// | 32 | [`mesh_hash`](crate::mesh_hash), u64 |
+/// | 40 | unit of distances, f64 |
+/// | 48 | cost of a patch test t_P, f64 |
+/// | 56 | cost of an accepted patch t_A, f64 |
+/// | 64 | four view distances, f64 each |
+/// | 96 | their four weights, f64 each |
+/// | 128 | edges in a block, u32 |
+/// | 132 | most edges in a patch, u32 |
+/// | 136 | most vertices in a patch, u32 |
+/// | 140 | bound, u32: 0 mean, 1 reduced, 2 minimal, 3 tight |
+/// | 144 | levels, u32: 1 or 2 |
+/// | 148 | method, five u32: 0, sphere (0 mean, 1 reduced), cache size, whether partitions are limited (0 or 1), most edges in a partition; or 1, cell, sweeps, 0, 0 |
+/// | 168 | numbers of super-patches, patches, edges and vertices, u32 each |
+/// | 184 | zeros |
+///
+/// Sections: super-patches ([`SuperPatch`], 40 bytes each), patches ([`Patch`], 40), wings (16),
+/// edge ids (4), positions (12), classes (1: 0 convex, 1 flat, 2 concave, 3 boundary,
+/// 4 non-manifold, 5 inconsistent).
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use drypoint_fusion::{FusionParams, PatchFile, fuse};
+/// use drypoint_mesh::{EdgeFilter, MeshAdjacency, shapes};
+///
+/// let mesh = shapes::icosphere(500);
+/// let go_on = |_| ControlFlow::Continue(());
+/// let params = FusionParams::PAPER;
+/// let set = fuse(&mesh, &MeshAdjacency::new(&mesh), EdgeFilter::All, &params, &go_on)?;
+///
+/// let bytes = set.to_bytes();
+/// let file = PatchFile::parse(&bytes)?;
+/// assert_eq!(file.wings(), set.wings());
+/// assert_eq!(file.to_patch_set(), set);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct PatchFile<'a> {
+    content: Content<'a>,
+    provenance: Provenance,
+}
+
+impl<'a> PatchFile<'a> {
+    /// Checks all that could make a reader fail or read out of range; that the bounds hold is not
+    /// checked ([`PatchSet::validate`] does that). Linear: the checksum reads every byte.
+    ///
+    /// `bytes` must begin at a multiple of 4 in memory, as mapped files and what allocators give do.
+    ///
+    /// # Errors
+    /// What is wrong with the bytes; the same bytes, the same error. Never panics.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, PatchFileError> {
+        let found = bytes.len() as u64;
+        let known = bytes.len().min(MAGIC.len());
+        if bytes[..known] != MAGIC[..known] {
+            return Err(PatchFileError::Foreign);
+        }
+        if let Some(&[.., a, b, c, d]) = bytes.first_chunk::<12>() {
+            match u32::from_le_bytes([a, b, c, d]) {
+                VERSION => {}
+                found if found < VERSION => return Err(PatchFileError::Older { found }),
+                found => return Err(PatchFileError::Newer { found }),
+            }
+        }
+        let Some(head) = bytes.first_chunk::<HEADER>() else {
+            return Err(PatchFileError::Truncated { expected: HEADER as u64, found });
+        };
+        let expected = Fields(head).u64(24);
+        if found < expected {
+            return Err(PatchFileError::Truncated { expected, found });
+        }
+        if found > expected {
+            return Err(PatchFileError::TrailingBytes { extra: found - expected });
+        }
+        if checksum(bytes) != Fields(head).u64(CHECKSUM.start) {
+            return Err(PatchFileError::Corrupt);
+        }
+        let header = Header::read(head)?;
+        let layout = Layout::new(header.counts.map(u64::from));
+        if layout.total() != expected {
+            return Err(PatchFileError::Header { field: "counts" });
+        }
+        let file = Self { content: layout.read(bytes)?, provenance: header.provenance };
+        file.content.validate()?;
+        Ok(file)
+    }
+
+    /// As [`PatchSet::super_patches`].
+    pub fn super_patches(&self) -> &'a [SuperPatch] {
+        self.content.super_patches
+    }
+
+    /// As [`PatchSet::patches`].
+    pub fn patches(&self) -> &'a [Patch] {
+        self.content.patches
+    }
+
+    /// As [`PatchSet::wings`].
+    pub fn wings(&self) -> &'a [Wing] {
+        self.content.wings
+    }
+
+    /// As [`PatchSet::edge_ids`].
+    pub fn edge_ids(&self) -> &'a [EdgeId] {
+        self.content.edge_ids
+    }
+
+    /// As [`PatchSet::classes`].
+    pub fn classes(&self) -> &'a [EdgeClass] {
+        self.content.classes
+    }
+
+    /// As [`PatchSet::positions`].
+    pub fn positions(&self) -> &'a [Vec3] {
+        self.content.positions
+    }
+
+    /// What it was made from.
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// A copy that needs the bytes no longer.
+    pub fn to_patch_set(&self) -> PatchSet {
+        PatchSet {
+            super_patches: self.super_patches().to_vec(),
+            patches: self.patches().to_vec(),
+            wings: self.wings().to_vec(),
+            edge_ids: self.edge_ids().to_vec(),
+            classes: self.classes().to_vec(),
+            positions: self.positions().to_vec(),
+            provenance: self.provenance,
+        }
+    }
+}
+
+impl PatchSet {
+    /// The asset as a file's content ([`PatchFile`] has the format). The same asset always gives the
+    /// same bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let lengths =
+            [self.super_patches.len(), self.patches.len(), self.wings.len(), self.positions.len()];
+        #[expect(clippy::cast_possible_truncation, reason = "ids of all four are u32")]
+        let counts = lengths.map(|length| length as u32);
+        let layout = Layout::new(counts.map(u64::from));
+        let header = Header { provenance: self.provenance, counts, length: layout.total() };
+        let mut bytes = header.to_bytes();
+        let mut append = |section: &Range<u64>, data: &[u8]| {
+            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
+            debug_assert_eq!(section, &(bytes.len() as u64..(bytes.len() + data.len()) as u64));
+            bytes.extend_from_slice(data);
+        };
+        append(&layout.super_patches, &little_endian(&self.super_patches));
+        append(&layout.patches, &little_endian(&self.patches));
+        append(&layout.wings, &little_endian(&self.wings));
+        append(&layout.edge_ids, &little_endian(&self.edge_ids));
+        append(&layout.positions, &little_endian(&self.positions));
+        append(&layout.classes, bytemuck::cast_slice(&self.classes));
+        let checksum = checksum(&bytes);
+        bytes[CHECKSUM].copy_from_slice(&checksum.to_le_bytes());
+        bytes
+    }
+
+    /// Writes [`PatchSet::to_bytes`].
+    ///
+    /// # Errors
+    /// What `out` fails with.
+    pub fn write(&self, mut out: impl Write) -> io::Result<()> {
+        out.write_all(&self.to_bytes())
+    }
+
+    /// Reads what [`PatchSet::to_bytes`] wrote, wherever it lies in memory. Checks what
+    /// [`PatchFile::parse`] does. Linear; takes no more memory than twice the bytes.
+    ///
+    /// # Errors
+    /// As [`PatchFile::parse`], but for [`PatchFileError::Misaligned`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PatchFileError> {
+        if is_aligned(bytes) {
+            return PatchFile::parse(bytes).map(|file| file.to_patch_set());
+        }
+        let mut words = vec![0u32; bytes.len().div_ceil(size_of::<u32>())];
+        let copy = &mut bytemuck::cast_slice_mut(&mut words)[..bytes.len()];
+        copy.copy_from_slice(bytes);
+        PatchFile::parse(copy).map(|file| file.to_patch_set())
+    }
 }
 
 /// Where each section is.
@@ -106,9 +294,9 @@ struct Layout {
 }
 
 impl Layout {
+    /// Counts are below 2³², so that nothing overflows.
     fn new([super_patch_count, patch_count, edge_count, vertex_count]: [u64; 4]) -> Self {
         let mut end = HEADER as u64;
-        // Counts are below 2³², so that nothing overflows.
         let mut section = |count: u64, size: usize| {
             let start = end.next_multiple_of(ALIGNMENT as u64);
             end = start + count * size as u64;
@@ -120,238 +308,74 @@ impl Layout {
             wings: section(edge_count, size_of::<Wing>()),
             edge_ids: section(edge_count, size_of::<EdgeId>()),
             positions: section(vertex_count, size_of::<Vec3>()),
-            classes: section(edge_count, 1),
+            classes: section(edge_count, size_of::<EdgeClass>()),
         }
     }
 
     fn total(&self) -> u64 {
         self.classes.end
     }
-}
 
-impl PatchSet {
-    /// The asset as a file's content. The same asset always gives the same bytes.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let lists = [self.super_patches.len(), self.patches.len()];
-        let counts = [lists[0], lists[1], self.wings.len(), self.positions.len()];
-        let layout = Layout::new(counts.map(|count| count as u64));
-        let mut bytes = self.header(counts, layout.total());
-        let mut append = |section: &Range<u64>, data: &[u8]| {
-            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT), 0);
-            debug_assert_eq!(section, &(bytes.len() as u64..(bytes.len() + data.len()) as u64));
-            bytes.extend_from_slice(data);
-        };
-        append(&layout.super_patches, &little_endian(&self.super_patches));
-        append(&layout.patches, &little_endian(&self.patches));
-        append(&layout.wings, &little_endian(&self.wings));
-        append(&layout.edge_ids, &little_endian(&self.edge_ids));
-        append(&layout.positions, &little_endian(&self.positions));
-        let classes: Vec<u8> = self.classes.iter().map(|&class| class as u8).collect();
-        append(&layout.classes, &classes);
-        let hash = hash(&bytes);
-        bytes[HASH].copy_from_slice(&hash.to_le_bytes());
-        bytes
-    }
-
-    /// Writes [`PatchSet::to_bytes`].
-    ///
-    /// # Errors
-    /// What `out` fails with.
-    pub fn write(&self, mut out: impl Write) -> io::Result<()> {
-        out.write_all(&self.to_bytes())
-    }
-
-    fn header(&self, counts: [usize; 4], total: u64) -> Vec<u8> {
-        let Provenance { params, filter, mesh_hash, unit } = self.provenance;
-        let mut header = Vec::with_capacity(HEADER);
-        let mut put = |bytes: &[u8]| header.extend_from_slice(bytes);
-        put(MAGIC);
-        put(&VERSION.to_le_bytes());
-        put(&u32::from(filter == EdgeFilter::All).to_le_bytes());
-        put(&[0; 8]);
-        put(&total.to_le_bytes());
-        put(&mesh_hash.to_le_bytes());
-        put(&unit.to_le_bytes());
-        put(&params.cost.patch_test.to_le_bytes());
-        put(&params.cost.accepted_patch.to_le_bytes());
-        for distance_or_weight in params.views.distances.into_iter().chain(params.views.weights) {
-            put(&distance_or_weight.to_le_bytes());
+    /// The sections of `bytes`, which are [`Layout::total`] long.
+    fn read<'a>(&self, bytes: &'a [u8]) -> Result<Content<'a>, PatchFileError> {
+        if cfg!(target_endian = "big") {
+            return Err(PatchFileError::BigEndian);
         }
-        let CostModel { block, max_edges, max_vertices, .. } = params.cost;
-        let method = match params.method {
-            Method::Greedy { sphere, cache_size, max_partition } => {
-                let sphere = sphere as u32;
-                let limit = max_partition.unwrap_or(0);
-                [0, sphere, cache_size, u32::from(max_partition.is_some()), limit]
+        if !is_aligned(bytes) {
+            return Err(PatchFileError::Misaligned);
+        }
+        let mut end = HEADER as u64;
+        for section in [
+            &self.super_patches,
+            &self.patches,
+            &self.wings,
+            &self.edge_ids,
+            &self.positions,
+            &self.classes,
+        ] {
+            let between = slice(bytes, &(end..section.start));
+            if let Some(place) = between.iter().position(|&byte| byte != 0) {
+                return Err(PatchFileError::Padding { offset: end + place as u64 });
             }
-            Method::Planes { cell, sweeps } => [1, cell, sweeps, 0, 0],
-        };
-        let kinds = [params.bound as u32, params.levels as u32];
-        for word in [block, max_edges, max_vertices].into_iter().chain(kinds).chain(method) {
-            put(&word.to_le_bytes());
+            end = section.end;
         }
-        for count in counts {
-            #[expect(clippy::cast_possible_truncation, reason = "ids of all four are u32")]
-            put(&(count as u32).to_le_bytes());
-        }
-        header.resize(HEADER, 0);
-        header
+        Ok(Content {
+            super_patches: cast(bytes, &self.super_patches)?,
+            patches: cast(bytes, &self.patches)?,
+            wings: cast(bytes, &self.wings)?,
+            edge_ids: cast(bytes, &self.edge_ids)?,
+            positions: cast(bytes, &self.positions)?,
+            classes: cast(bytes, &self.classes)?,
+        })
     }
-
-    /// Reads what [`PatchSet::to_bytes`] wrote. Everything that could make a reader fail or read
-    /// out of range is checked; that the bounds hold is not ([`PatchSet::validate`] does that).
-    /// Linear; takes no more memory than the bytes do.
-    ///
-    /// # Errors
-    /// What is wrong with the bytes; the same bytes, the same error. Never panics.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PatchFileError> {
-        let found = bytes.len() as u64;
-        let known = bytes.len().min(MAGIC.len());
-        if bytes[..known] != MAGIC[..known] {
-            return Err(PatchFileError::Foreign);
-        }
-        let Some(header) = bytes.first_chunk::<HEADER>() else {
-            return Err(PatchFileError::Truncated { expected: HEADER as u64, found });
-        };
-        let header = Header(header);
-        if header.u32(8) != VERSION {
-            return Err(PatchFileError::Version { found: header.u32(8) });
-        }
-        let expected = header.u64(24);
-        if found < expected {
-            return Err(PatchFileError::Truncated { expected, found });
-        }
-        if found > expected {
-            return Err(PatchFileError::TrailingBytes { extra: found - expected });
-        }
-        if hash(bytes) != header.u64(16) {
-            return Err(PatchFileError::Corrupt);
-        }
-        let counts = [168, 172, 176, 180].map(|at| u64::from(header.u32(at)));
-        let layout = Layout::new(counts);
-        if layout.total() != expected {
-            return Err(PatchFileError::Header { field: "counts" });
-        }
-        let set = Self {
-            super_patches: read_section(bytes, &layout.super_patches),
-            patches: read_section(bytes, &layout.patches),
-            wings: read_section(bytes, &layout.wings),
-            edge_ids: read_section(bytes, &layout.edge_ids),
-            positions: read_section(bytes, &layout.positions),
-            classes: read_classes(section(bytes, &layout.classes))?,
-            provenance: header.provenance()?,
-        };
-        set.content().validate()?;
-        Ok(set)
-    }
-}
-
-/// The first bytes of a file.
-struct Header<'a>(&'a [u8; HEADER]);
-
-impl Header<'_> {
-    fn u32(&self, at: usize) -> u32 {
-        u32::from_le_bytes(std::array::from_fn(|i| self.0[at + i]))
-    }
-
-    fn u64(&self, at: usize) -> u64 {
-        u64::from_le_bytes(std::array::from_fn(|i| self.0[at + i]))
-    }
-
-    fn f64(&self, at: usize) -> f64 {
-        f64::from_bits(self.u64(at))
-    }
-
-    fn provenance(&self) -> Result<Provenance, PatchFileError> {
-        let invalid = |field| Err(PatchFileError::Header { field });
-        let filter = match self.u32(12) {
-            0 => EdgeFilter::Convex,
-            1 => EdgeFilter::All,
-            _ => return invalid("edge filter"),
-        };
-        let bound = match self.u32(140) {
-            0 => BoundKind::Mean,
-            1 => BoundKind::Reduced,
-            2 => BoundKind::Minimal,
-            3 => BoundKind::Tight,
-            _ => return invalid("bound"),
-        };
-        let levels = match self.u32(144) {
-            1 => Levels::One,
-            2 => Levels::Two,
-            _ => return invalid("levels"),
-        };
-        let cost = CostModel {
-            patch_test: self.f64(48),
-            accepted_patch: self.f64(56),
-            block: self.u32(128),
-            max_edges: self.u32(132),
-            max_vertices: self.u32(136),
-        };
-        let views = ViewProfile {
-            distances: std::array::from_fn(|i| self.f64(64 + 8 * i)),
-            weights: std::array::from_fn(|i| self.f64(96 + 8 * i)),
-        };
-        let Some(method) = self.method() else { return invalid("method") };
-        let params = FusionParams { bound, cost, views, method, levels };
-        Ok(Provenance { params, filter, mesh_hash: self.u64(32), unit: self.f64(40) })
-    }
-}
-
-impl Header<'_> {
-    fn method(&self) -> Option<Method> {
-        let [kind, a, b, c, d] = [148, 152, 156, 160, 164].map(|at| self.u32(at));
-        match kind {
-            0 => {
-                let sphere = match a {
-                    0 => SphereKind::Mean,
-                    1 => SphereKind::Reduced,
-                    _ => return None,
-                };
-                let max_partition = match c {
-                    0 => None,
-                    1 => Some(d),
-                    _ => return None,
-                };
-                Some(Method::Greedy { sphere, cache_size: b, max_partition })
-            }
-            1 => Some(Method::Planes { cell: a, sweeps: b }),
-            _ => None,
-        }
-    }
-}
-
-/// Of every byte but those that hold it.
-fn hash(bytes: &[u8]) -> u64 {
-    let mut hash = Xxh3::new();
-    hash.update(&bytes[..HASH.start]);
-    hash.update(&bytes[HASH.end..]);
-    hash.digest()
 }
 
 /// The bytes of a section, which is in range.
-fn section<'a>(bytes: &'a [u8], range: &Range<u64>) -> &'a [u8] {
+fn slice<'a>(bytes: &'a [u8], range: &Range<u64>) -> &'a [u8] {
     // The end of the last section is the length of `bytes`, so both fit.
     #[expect(clippy::cast_possible_truncation, reason = "see above")]
     let range = range.start as usize..range.end as usize;
     &bytes[range]
 }
 
-fn read_section<T: Pod>(bytes: &[u8], range: &Range<u64>) -> Vec<T> {
-    let mut data: Vec<T> = section(bytes, range)
-        .chunks_exact(size_of::<T>())
-        .map(bytemuck::pod_read_unaligned)
-        .collect();
-    let words: &mut [u32] = bytemuck::cast_slice_mut(&mut data);
-    words.iter_mut().for_each(|word| *word = u32::from_le(*word));
-    data
+/// A section as what it holds. It has the right length and begins at a multiple of 4, and only
+/// classes have codes that stand for nothing.
+fn cast<'a, T: CheckedBitPattern>(
+    bytes: &'a [u8],
+    range: &Range<u64>,
+) -> Result<&'a [T], PatchFileError> {
+    checked::try_cast_slice(slice(bytes, range)).map_err(|_| PatchFileError::UnknownClass)
 }
 
-fn read_classes(codes: &[u8]) -> Result<Vec<EdgeClass>, PatchFileError> {
-    let class = |&code: &u8| CLASSES.get(usize::from(code)).copied();
-    codes
-        .iter()
-        .map(class)
-        .collect::<Option<_>>()
-        .ok_or(PatchFileError::Header { field: "classes" })
+/// Whether the 4-byte numbers of a file can be read where they lie.
+fn is_aligned(bytes: &[u8]) -> bool {
+    bytes.as_ptr().addr().is_multiple_of(align_of::<u32>())
+}
+
+/// Of every byte but those that hold it.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mut hash = Xxh3::new();
+    hash.update(&bytes[..CHECKSUM.start]);
+    hash.update(&bytes[CHECKSUM.end..]);
+    hash.digest()
 }

@@ -2,13 +2,15 @@
 
 use std::cmp::Ordering;
 
+use bytemuck::{CheckedBitPattern, NoUninit};
 use glam::Vec3;
 
 use crate::facing::are_opposite;
 use crate::{Mesh, Wing, volume_side};
 
-/// What an edge is, whatever the viewpoint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+/// What an edge is, whatever the viewpoint. One byte, its place in this list from 0: files of
+/// patches hold it so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, CheckedBitPattern, NoUninit)]
 #[repr(u8)]
 pub enum EdgeClass {
     /// Two faces; the surface bends away from the viewer outside. Exact: the right vertex lies
