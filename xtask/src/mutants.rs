@@ -4,12 +4,15 @@
 //! there, and the tables of who noticed what must be those in `docs/mutants.md`. `--bless` writes
 //! that file instead. Another crate joins in with a suite of its own in [`SUITES`].
 
+mod bounds;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell;
+use bounds::BOUNDS;
 
 /// Where the expected table is kept, from the root.
 const TABLE: &str = "docs/mutants.md";
@@ -47,11 +50,6 @@ const SUITES: &[Suite] = &[Suite {
     mutants: BOUNDS,
 }];
 
-const CONE: &str = "crates/bounds/src/cone.rs";
-const SPHERE: &str = "crates/bounds/src/sphere.rs";
-const SPATIALIZED: &str = "crates/bounds/src/spatialized.rs";
-const DOUBLE: &str = "crates/bounds/src/double_cone.rs";
-
 const fn mutant(
     name: &'static str,
     file: &'static str,
@@ -60,119 +58,6 @@ const fn mutant(
 ) -> Mutant {
     Mutant { name, file, find, replace }
 }
-
-const BOUNDS: &[Mutant] = &[
-    mutant(
-        "`SpatializedNormalCone`: radius × 0.97",
-        SPATIALIZED,
-        "viewpoint.w() * self.sphere.radius",
-        "viewpoint.w() * 0.97 * self.sphere.radius",
-    ),
-    mutant(
-        "`SpatializedNormalCone`: radius × 0.8",
-        SPATIALIZED,
-        "viewpoint.w() * self.sphere.radius",
-        "viewpoint.w() * 0.8 * self.sphere.radius",
-    ),
-    mutant(
-        "`SpatializedNormalCone`: radius × 0.5",
-        SPATIALIZED,
-        "viewpoint.w() * self.sphere.radius",
-        "viewpoint.w() * 0.5 * self.sphere.radius",
-    ),
-    mutant(
-        "`SpatializedNormalCone`: sin × 0.97",
-        SPATIALIZED,
-        "height > sin * tangent",
-        "height > 0.97 * sin * tangent",
-    ),
-    mutant(
-        "`SpatializedNormalCone`: lost `abs`",
-        SPATIALIZED,
-        "axis.dot(to_viewpoint).abs()",
-        "axis.dot(to_viewpoint)",
-    ),
-    mutant(
-        "`SpatializedNormalCone`: `return true`",
-        SPATIALIZED,
-        "!is_culled",
-        "is_culled || true",
-    ),
-    mutant(
-        "`DoubleCone`: radius × 0.97",
-        DOUBLE,
-        "sphere.radius / half_angle.cos()",
-        "0.97 * sphere.radius / half_angle.cos()",
-    ),
-    mutant(
-        "`DoubleCone`: radius × 0.8",
-        DOUBLE,
-        "sphere.radius / half_angle.cos()",
-        "0.8 * sphere.radius / half_angle.cos()",
-    ),
-    mutant(
-        "`DoubleCone`: radius × 0.5",
-        DOUBLE,
-        "sphere.radius / half_angle.cos()",
-        "0.5 * sphere.radius / half_angle.cos()",
-    ),
-    mutant(
-        "`DoubleCone`: sin × 0.97",
-        DOUBLE,
-        "cone.half_angle() + tilt",
-        "(0.97 * cone.sin).atan2(cone.cos) + tilt",
-    ),
-    mutant("`DoubleCone`: lost `abs`", DOUBLE, "height.abs()", "height"),
-    mutant("`DoubleCone`: `return true`", DOUBLE, "!is_culled", "is_culled || true"),
-    mutant(
-        "`DoubleCone`: no inflation",
-        DOUBLE,
-        "pub const SLACK: f64 = 8.0",
-        "pub const SLACK: f64 = 0.0",
-    ),
-    mutant(
-        "`DoubleCone`: \\|w\\|² − h² for \\|p\\|²",
-        DOUBLE,
-        "across.length_squared()",
-        "(to_viewpoint.length_squared() - height * height)",
-    ),
-    mutant(
-        "`DoubleCone`: squares below 2⁻¹²⁶ trusted",
-        DOUBLE,
-        "MIN_CLEARANCE: f32 = 1.0",
-        "MIN_CLEARANCE: f32 = 0.0",
-    ),
-    mutant(
-        "`DoubleCone`: t not dropped in orthographic views",
-        DOUBLE,
-        "height.abs() - w * self.apex_distance",
-        "height.abs() - w.max(1.0) * self.apex_distance",
-    ),
-    mutant(
-        "`NormalCone`: sine by √(1 − cos²)",
-        CONE,
-        "normal.cross(axis).length_squared()",
-        "1.0 - normal_cos * normal_cos",
-    ),
-    mutant(
-        "`NormalCone::minimal`: a support too few",
-        "crates/bounds/src/cap.rs",
-        "            consider(a + b, &[a, b]);",
-        "            consider(a, &[a, b]);",
-    ),
-    mutant(
-        "`Sphere::reduced`: radius × 0.97",
-        SPHERE,
-        "radius: largest(edges",
-        "radius: 0.97 * largest(edges",
-    ),
-    mutant(
-        "`Sphere::mean`: radius × 0.97",
-        SPHERE,
-        "radius: largest(points",
-        "radius: 0.97 * largest(points",
-    ),
-];
 
 /// Runs all mutants. Arguments: `--bless` writes the table instead of comparing.
 ///
@@ -411,7 +296,7 @@ mod tests {
 
     #[test]
     fn a_replacement_without_its_place_is_an_error() {
-        let mutant = mutant("m", CONE, "sin", "cos");
+        let mutant = mutant("m", "m.rs", "sin", "cos");
         assert_eq!(mutant.apply("a sin b"), Ok("a cos b".to_owned()));
         assert!(mutant.apply("nothing").unwrap_err().contains("0 times"));
         assert!(mutant.apply("sin and sin").unwrap_err().contains("2 times"));

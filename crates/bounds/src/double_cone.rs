@@ -26,9 +26,10 @@
 //! ```
 //!
 //! Growing t by 8 u t / cos α pays for the first term. Growing α by 8 u makes the cone wider by
-//! 8 u |p| / cos² α there, which pays for the second at any α below 90°. Rounding the center moves
-//! it by √3 u times its largest coordinate at most, for which t grows by 8 u of that, over cos α.
-//! Multiplications and additions may be fused or taken in any order: that only takes roundings away.
+//! 8 u |p| / cos² α there, which pays for the second at any α below 90°. Rounding the center of a
+//! sphere moves it by √3 u times its largest coordinate at most, for which t grows by 8 u of that,
+//! over cos α; `tight.rs` measures t about the rounded one instead. Multiplications and additions may
+//! be fused or taken in any order: that only takes roundings away.
 //!
 //! Measured, on a million worst planes each (`ring_3_rim_of_the_double_cone`): 2 units lose some,
 //! 3 none.
@@ -124,6 +125,26 @@ impl DoubleCone {
         let cone = NormalCone { axis: self.axis.as_dvec3(), sin: tan * cos, cos };
         acceptance(&cone, f64::from(self.apex_distance) * cos, distance)
     }
+
+    /// Grown by what pays for the arithmetic at run time, and rounded up. What it is measured about
+    /// is stored as it is: α is `half_angle`, in radians, and t is `apex_distance`, in model units.
+    ///
+    /// [`DoubleCone::ALWAYS`] if a number is NaN or does not fit an f32.
+    pub(crate) fn inflated(center: Vec3, axis: Vec3, half_angle: f64, apex_distance: f64) -> Self {
+        let half_angle = half_angle + SLACK;
+        let growth = SLACK * apex_distance / half_angle.cos();
+        let bound = Self {
+            center,
+            apex_distance: round_up(apex_distance + growth),
+            axis,
+            tan_squared: round_up(half_angle.tan().powi(2)),
+        };
+        if bound.center.is_finite() && bound.apex_distance.is_finite() {
+            bound
+        } else {
+            Self::ALWAYS
+        }
+    }
 }
 
 /// Rounds outward, so that whatever `bound` keeps, in f64, is kept in f32. What rounding turned the
@@ -139,21 +160,10 @@ impl From<SpatializedNormalCone> for DoubleCone {
         if cone.half_angle() > MAX_HALF_ANGLE || !is_unit(cone.axis) {
             return Self::ALWAYS;
         }
-        let half_angle = cone.half_angle() + tilt + SLACK;
-        let apex_distance = sphere.radius / half_angle.cos();
-        let scale = f64::from(center.abs().max_element());
-        let growth = SLACK * (apex_distance + scale) / half_angle.cos();
-        let bound = Self {
-            center,
-            apex_distance: round_up(apex_distance + growth),
-            axis,
-            tan_squared: round_up(half_angle.tan().powi(2)),
-        };
-        if bound.center.is_finite() && bound.apex_distance.is_finite() {
-            bound
-        } else {
-            Self::ALWAYS
-        }
+        let half_angle = cone.half_angle() + tilt;
+        let wider = half_angle + SLACK;
+        let moved = SLACK * f64::from(center.abs().max_element()) / wider.cos();
+        Self::inflated(center, axis, half_angle, sphere.radius / wider.cos() + moved)
     }
 }
 

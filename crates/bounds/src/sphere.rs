@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::least_ball::center_of_least_ball;
+
 /// What a computed distance may be off by, as a share of the distances that went into it.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -30,6 +32,20 @@ impl Sphere {
     pub fn reduced(edges: impl Iterator<Item = [DVec3; 2]> + Clone) -> Self {
         let midpoints = edges.clone().map(|[tail, head]| 0.5 * (tail + head));
         Self::meeting_lines(mean(midpoints), edges)
+    }
+
+    /// The smallest ball that meets the line through each edge: never larger than the Reduced Sphere,
+    /// for some 30 scans instead of 2. At the origin if there are none.
+    ///
+    /// A convex program, solved to where r² is at most 1e-8 R² + 1e-6 d² above the least of any
+    /// ball's, R being the radius of the Reduced Sphere and d how far that ball's center is from its
+    /// center. So a center far off along lines that are almost parallel, where there is little to
+    /// gain, is left alone. The radius is then measured, and errs to the safe side as all others do.
+    pub fn minimal(edges: impl Iterator<Item = [DVec3; 2]> + Clone) -> Self {
+        let reduced = Self::reduced(edges.clone());
+        let center = center_of_least_ball(reduced.center, reduced.radius, edges.clone());
+        let minimal = Self::meeting_lines(center, edges);
+        if minimal.radius < reduced.radius { minimal } else { reduced }
     }
 
     /// The smallest ball around `center` that holds these points. One scan.
@@ -63,13 +79,14 @@ fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
 }
 
 /// The largest, at least 0; infinite if any is NaN, which `f64::max` would pass over.
-fn largest(distances: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn largest(distances: impl Iterator<Item = f64>) -> f64 {
     distances.map(|d| if d.is_nan() { f64::INFINITY } else { d }).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[track_caller]
     fn check(sphere: Sphere, center: DVec3, radius: f64) {
@@ -111,5 +128,67 @@ mod tests {
         let unknown = [EDGES[0], [DVec3::NAN, DVec3::X], EDGES[1]];
         assert_eq!(Sphere::reduced(unknown.into_iter()).radius, f64::INFINITY);
         assert_eq!(Sphere::mean(unknown.into_iter().flatten()).radius, f64::INFINITY);
+        assert_eq!(Sphere::minimal(unknown.into_iter()).radius, f64::INFINITY);
+        check(Sphere::minimal([].into_iter()), DVec3::ZERO, 0.0);
+        check(Sphere::minimal(EDGES.into_iter().take(1)), DVec3::Y, 0.0);
+        check(Sphere::minimal([[DVec3::Y; 2]; 3].into_iter()), DVec3::Y, 0.0);
+    }
+
+    #[track_caller]
+    fn check_minimal(edges: &[[DVec3; 2]], expected: f64) {
+        let sphere = Sphere::minimal(edges.iter().copied());
+        let error = sphere.radius - expected;
+        assert!((-1e-14..1e-4).contains(&error), "{sphere:?}, not {expected}");
+    }
+
+    #[test]
+    fn the_minimal_sphere_is_seen_by_hand() {
+        // Parallel lines: half their distance, however many are on one side and wherever along them.
+        check_minimal(&EDGES, 1.0);
+        check_minimal(&[EDGES[0], EDGES[0], EDGES[0], EDGES[1]], 1.0);
+        let slid = EDGES[1].map(|end| end + 1e3 * DVec3::X);
+        check_minimal(&[EDGES[0], slid], 1.0);
+        assert!(Sphere::minimal([EDGES[0], slid].into_iter()).center.x.abs() < 1e3);
+        // Lines that cross meet a point; skew ones have half their distance between them.
+        check_minimal(
+            &[[DVec3::X, DVec3::Y], [DVec3::X, DVec3::NEG_Z], [DVec3::ZERO, DVec3::X]],
+            0.0,
+        );
+        check_minimal(&[[DVec3::ZERO, DVec3::X], [DVec3::Z, DVec3::new(5.0, 1.0, 1.0)]], 0.5);
+        // Points: a regular tetrahedron's corners lie on a ball of radius √3, one is inside.
+        let corners = [[1.0; 3], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [0.5; 3]];
+        check_minimal(&corners.map(|corner| [DVec3::from_array(corner); 2]), 3f64.sqrt());
+    }
+
+    /// Edges around a direction of any spread: in all directions to almost parallel.
+    fn edges() -> impl Strategy<Value = Vec<[DVec3; 2]>> {
+        let vector = || [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array);
+        let edges = proptest::collection::vec((vector(), vector()), 1..40);
+        (edges, vector(), -6.0..1.0f64, -9.0..9.0f64).prop_map(|(edges, common, spread, size)| {
+            let (spread, size) = (10f64.powf(spread), 10f64.powf(size));
+            let edge = |(tail, along)| [tail, tail + common + spread * along];
+            edges.into_iter().map(|e| edge(e).map(|end| size * end)).collect()
+        })
+    }
+
+    proptest! {
+        /// The radius is convex in the center: if no center nearby is better, none is.
+        #[test]
+        fn no_other_center_is_better(
+            edges in edges(), turn in 0.0..6.3f64, z in -1.0..1.0f64, step in -6.0..2.0f64,
+        ) {
+            let reduced = Sphere::reduced(edges.iter().copied());
+            let best = Sphere::minimal(edges.iter().copied());
+            prop_assert!(best.radius <= reduced.radius);
+            let across = (1.0 - z * z).sqrt();
+            let direction = DVec3::new(across * turn.cos(), across * turn.sin(), z);
+            let center = best.center + 10f64.powf(step) * reduced.radius * direction;
+            let other = Sphere::meeting_lines(center, edges.iter().copied());
+            let far = center.distance_squared(reduced.center);
+            let allowed = 1e-8 * reduced.radius.powi(2) + 1e-6 * far;
+            let size = Sphere::holding(reduced.center, edges.iter().flatten().copied()).radius;
+            let least = (other.radius.powi(2) + allowed).sqrt() + 1e-14 * size;
+            prop_assert!(best.radius <= least, "{best:?}, but {other:?}");
+        }
     }
 }

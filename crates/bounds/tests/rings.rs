@@ -3,15 +3,18 @@
 //! `docs/mutants.md` shows which ring notices which broken bound: viewpoints drawn at random do not
 //! see a radius 3 % too small.
 
+mod draw;
 mod support;
 
 use std::sync::LazyLock;
 
+use draw::cases;
+use draw::{direction, magnitude};
 use drypoint_bounds::{DoubleCone, NormalCone, SpatializedNormalCone, Sphere};
 use drypoint_mesh::Viewpoint;
 use glam::DVec3;
 use proptest::prelude::*;
-use support::{Patch, Subject, cases, subjects};
+use support::{Patch, SPATIALIZED, Subject, subjects};
 
 static SUBJECTS: LazyLock<Vec<Subject>> = LazyLock::new(subjects);
 
@@ -21,20 +24,6 @@ fn patch() -> impl Strategy<Value = (&'static Subject, &'static Patch)> {
         let subject = &SUBJECTS[subject];
         (subject, patch.get(&subject.patches))
     })
-}
-
-/// A unit vector, uniform over the sphere.
-fn direction() -> impl Strategy<Value = DVec3> {
-    (-1.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(z, turn)| {
-        let (sin, cos) = turn.sin_cos();
-        let across = ((1.0 - z) * (1.0 + z)).sqrt();
-        DVec3::new(across * cos, across * sin, z)
-    })
-}
-
-/// 10 to a power between `low` and `high`.
-fn magnitude(low: f64, high: f64) -> impl Strategy<Value = f64> {
-    (low..high).prop_map(|exponent| 10f64.powf(exponent))
 }
 
 fn sign() -> impl Strategy<Value = f64> {
@@ -60,7 +49,7 @@ proptest! {
     #[test]
     fn ring_2_grazing(
         (subject, patch) in patch(), face in any::<prop::sample::Index>(),
-        bound in 0..4usize, distance in magnitude(-1.0, 4.0), turn in magnitude(-9.0, 0.5),
+        bound in 0..SPATIALIZED, distance in magnitude(-1.0, 4.0), turn in magnitude(-9.0, 0.5),
         hair in prop_oneof![3 => magnitude(-9.0, -1.0), 1 => Just(0.0)],
         side in sign(), way in sign(),
     ) {
@@ -176,7 +165,7 @@ proptest! {
     /// what it culls must still hold no contour edge.
     #[test]
     fn ring_3_surface_of_the_double_cone(
-        (subject, patch) in patch(), face in any::<prop::sample::Index>(), bound in 0..4usize,
+        (subject, patch) in patch(), face in any::<prop::sample::Index>(), bound in 0..SPATIALIZED + 1,
         past_apex in magnitude(-6.0, 4.0), turn in magnitude(-9.0, 0.5), side in sign(),
     ) {
         let cone = patch.double_cones[bound];
@@ -234,18 +223,25 @@ fn culled_shares(
 #[test]
 fn ring_4_a_smooth_ball_is_mostly_culled() {
     let smooth = SUBJECTS.iter().find(|subject| subject.name == "smooth").unwrap();
-    for bound in 0..4 {
-        let spatialized = |p: &Patch, v| p.bounds[bound].may_hold_contour(v);
-        let double = |p: &Patch, v| p.double_cones[bound].may_hold_contour(v);
-        let far = |direction| Viewpoint::at(50.0 * direction);
-        for [front, back] in [
-            culled_shares(smooth, far, spatialized),
-            culled_shares(smooth, far, double),
-            culled_shares(smooth, Viewpoint::from_direction, spatialized),
-            culled_shares(smooth, Viewpoint::from_direction, double),
-        ] {
-            assert!(front > 0.4 && back > 0.4, "bound {bound}: {front} and {back} culled");
-        }
+    let far = |direction| Viewpoint::at(50.0 * direction);
+    let check = |viewpoint: fn(DVec3) -> Viewpoint, kind: usize, is_double: bool| {
+        let may_hold = |p: &Patch, v| {
+            if is_double {
+                p.double_cones[kind].may_hold_contour(v)
+            } else {
+                p.bounds[kind].may_hold_contour(v)
+            }
+        };
+        let [front, back] = culled_shares(smooth, viewpoint, may_hold);
+        assert!(front > 0.4 && back > 0.4, "bound {kind}: {front} and {back} culled");
+    };
+    for kind in 0..SPATIALIZED {
+        check(far, kind, false);
+        check(Viewpoint::from_direction, kind, false);
+    }
+    for kind in 0..=SPATIALIZED {
+        check(far, kind, true);
+        check(Viewpoint::from_direction, kind, true);
     }
 }
 

@@ -2,22 +2,10 @@
 
 use std::fmt;
 
-use drypoint_bounds::{DoubleCone, NormalCone, SpatializedNormalCone, Sphere};
+use drypoint_bounds::{DoubleCone, NormalCone, Plane, SpatializedNormalCone, Sphere};
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, is_contour, shapes};
 use glam::{DVec3, Vec3};
-use proptest::test_runner::{Config, RngSeed, TestCaseError};
-
-/// The same cases in every run, so that the table of mutants can be compared.
-pub(crate) fn cases(count: u32) -> Config {
-    Config {
-        cases: count,
-        rng_seed: RngSeed::Fixed(20),
-        failure_persistence: None,
-        // Enough to read a case by, and little enough for broken bounds to fail within seconds.
-        max_shrink_iters: 1_000,
-        ..Config::default()
-    }
-}
+use proptest::test_runner::TestCaseError;
 
 /// A mesh, and patches on it.
 pub(crate) struct Subject {
@@ -27,15 +15,18 @@ pub(crate) struct Subject {
     pub(crate) patches: Vec<Patch>,
 }
 
-/// Neighbouring edges, and four bounds around their planes.
+/// Bounds of a patch that are made of a cone and a sphere.
+pub(crate) const SPATIALIZED: usize = 6;
+
+/// Neighbouring edges, and every bound around their planes.
 pub(crate) struct Patch {
     edges: Vec<EdgeId>,
     /// Corners and unit normal of the faces on both sides of its edges.
     pub(crate) faces: Vec<([DVec3; 3], DVec3)>,
-    /// Mean and minimal cone, each with the Mean and the Reduced Sphere.
-    pub(crate) bounds: [SpatializedNormalCone; 4],
-    /// Their run-time form.
-    pub(crate) double_cones: [DoubleCone; 4],
+    /// Mean and minimal cone, each with the Mean, the Reduced and the minimal sphere.
+    pub(crate) bounds: [SpatializedNormalCone; SPATIALIZED],
+    /// Their run-time form, and last the tight bound.
+    pub(crate) double_cones: [DoubleCone; SPATIALIZED + 1],
     /// A length about as large as the patch.
     pub(crate) size: f64,
 }
@@ -137,12 +128,18 @@ impl Subject {
         let mean_sphere =
             Sphere::mean(vertices.into_iter().map(|v| self.mesh.position(v).as_dvec3()));
         let cones = [NormalCone::mean(normals.clone()), NormalCone::minimal(normals)];
-        let spheres = [mean_sphere, Sphere::reduced(lines)];
-        let bounds: [_; 4] = std::array::from_fn(|i| SpatializedNormalCone {
-            cone: cones[i / 2],
-            sphere: spheres[i % 2],
+        let spheres = [mean_sphere, Sphere::reduced(lines.clone()), Sphere::minimal(lines)];
+        let bounds: [_; SPATIALIZED] = std::array::from_fn(|i| SpatializedNormalCone {
+            cone: cones[i / 3],
+            sphere: spheres[i % 3],
         });
-        let double_cones = bounds.map(DoubleCone::from);
+        let planes = faces
+            .iter()
+            .enumerate()
+            .map(|(i, &(_, normal))| Plane { normal, point: self.midpoint(edges[i / 2]) });
+        let tight = DoubleCone::tight(planes);
+        let double_cones =
+            std::array::from_fn(|i| bounds.get(i).map_or(tight, |&bound| bound.into()));
         Patch { edges, faces, bounds, double_cones, size: mean_sphere.radius }
     }
 
