@@ -20,11 +20,12 @@ use crate::{NormalCone, Plane};
 const MAX_SCANS: usize = 24;
 
 /// How close to the least cost the search ends, as a share of it.
-const TOLERANCE: f64 = 1e-3;
+const TOLERANCE: f64 = 1e-2;
 
 /// Distance of the viewpoints to which the place of the center is fitted, in units of the distance
-/// of the farthest of the points from their mean. In between, t counts as much as the place.
-const REACHES_TO_VIEWPOINT: f64 = 30.0;
+/// of the farthest of the points from their mean. Anything from 3 to 1000 changes what is tested by
+/// 0.1 % at most.
+const REACHES_TO_VIEWPOINT: f64 = 10.0;
 
 /// A plane as seen along the axis.
 #[derive(Clone, Copy, Debug)]
@@ -71,13 +72,14 @@ fn place_of_least_cost(heights: &[Height], stiffness: f64) -> DVec2 {
     let cost = |cut: &Cut, place: DVec2| cut.at(place) + stiffness * place.length_squared();
     let first = widest(heights, DVec2::ZERO);
     let (mut best, mut least) = (DVec2::ZERO, cost(&first, DVec2::ZERO));
-    let mut cuts = vec![first];
+    // Repeated ones say nothing new, and do no harm.
+    let mut cuts = [first; 4];
     let mut bound = f64::NEG_INFINITY;
     for _ in 0..MAX_SCANS {
-        let Some(lowest) = lowest_of_cuts(&cuts, stiffness) else { break };
+        let lowest = lowest_of_cuts(&cuts, stiffness);
         // The bound grows with each cut, or only rounding is left.
-        let is_done = lowest.cost <= bound || least - lowest.cost <= TOLERANCE * least;
-        if is_done {
+        let goes_on = lowest.cost > bound && least - lowest.cost > TOLERANCE * least;
+        if !goes_on {
             break;
         }
         bound = lowest.cost;
@@ -85,8 +87,8 @@ fn place_of_least_cost(heights: &[Height], stiffness: f64) -> DVec2 {
         if cost(&cut, lowest.place) < least {
             (best, least) = (lowest.place, cost(&cut, lowest.place));
         }
-        cuts = lowest.support;
-        cuts.push(cut);
+        let [i, j, k] = lowest.support;
+        cuts = [cut, cuts[i], cuts[j], cuts[k]];
     }
     best
 }
@@ -120,28 +122,28 @@ fn widest(heights: &[Height], place: DVec2) -> Cut {
 struct Lowest {
     place: DVec2,
     cost: f64,
-    /// The one to three cuts that hold it up.
-    support: Vec<Cut>,
+    /// Indices of the cuts that hold it up; there may be fewer than three.
+    support: [usize; 3],
 }
 
-/// Where the highest of up to four cuts, plus stiffness |x|², is lowest. Of all places that one, two
+/// Where the highest of four cuts, plus stiffness |x|², is lowest. Of all places that one, two
 /// or three of them alone would give, it is the one where the highest of all is lowest.
-fn lowest_of_cuts(cuts: &[Cut], stiffness: f64) -> Option<Lowest> {
-    let mut lowest: Option<Lowest> = None;
-    let mut consider = |place: DVec2, support: &[Cut]| {
+fn lowest_of_cuts(cuts: &[Cut; 4], stiffness: f64) -> Lowest {
+    let mut lowest = Lowest { place: DVec2::ZERO, cost: f64::INFINITY, support: [0; 3] };
+    let mut consider = |place: DVec2, support: [usize; 3]| {
         let highest = cuts.iter().map(|cut| cut.at(place)).fold(f64::NEG_INFINITY, f64::max);
         let cost = highest + stiffness * place.length_squared();
         // Not if it is NaN.
-        if cost < lowest.as_ref().map_or(f64::INFINITY, |lowest| lowest.cost) {
-            lowest = Some(Lowest { place, cost, support: support.to_vec() });
+        if cost < lowest.cost {
+            lowest = Lowest { place, cost, support };
         }
     };
     for (i, &a) in cuts.iter().enumerate() {
-        consider(a.fall / (2.0 * stiffness), &[a]);
+        consider(a.fall / (2.0 * stiffness), [i; 3]);
         for (j, &b) in cuts.iter().enumerate().skip(i + 1) {
-            consider(lowest_on_crease(a, b, stiffness), &[a, b]);
-            for &c in &cuts[j + 1..] {
-                consider(crossing(a.above(&b), a.above(&c)), &[a, b, c]);
+            consider(lowest_on_crease(a, b, stiffness), [i, j, j]);
+            for (k, &c) in cuts.iter().enumerate().skip(j + 1) {
+                consider(crossing(a.above(&b), a.above(&c)), [i, j, k]);
             }
         }
     }
