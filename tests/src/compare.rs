@@ -3,6 +3,7 @@
 use drypoint_cpu::{BruteForce, extract_all_wings, extract_patches};
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
+use rayon::prelude::*;
 
 /// How an extractor disagrees with the definition, with all that is needed to see it again.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,35 +25,97 @@ pub struct Agreement {
     pub viewpoints: usize,
     /// Contour edges found, over all viewpoints.
     pub contour_edges: usize,
+    /// Bounds that were tested, of patches and super-patches, over all viewpoints.
+    pub bounds_tested: usize,
     /// Edges that patches tested, over all viewpoints.
     pub edges_tested: usize,
 }
 
-/// Looks at `mesh` from every viewpoint with every extractor; the first that disagrees with
-/// [`contour_edges`] is an error.
+impl std::ops::Add for Agreement {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            viewpoints: self.viewpoints + other.viewpoints,
+            contour_edges: self.contour_edges + other.contour_edges,
+            bounds_tested: self.bounds_tested + other.bounds_tested,
+            edges_tested: self.edges_tested + other.edges_tested,
+        }
+    }
+}
+
+/// One viewpoint in so many is also looked from without culling: that does not depend on bounds.
+const ALL_WINGS_EVERY: usize = 8;
+
+/// What is to be found in a mesh, by the definition, for comparing many patch sets of it.
+#[derive(Clone, Debug)]
+pub struct Expected {
+    filter: EdgeFilter,
+    /// Contour edges from each viewpoint, by id.
+    views: Vec<(Viewpoint, Vec<EdgeId>)>,
+}
+
+impl Expected {
+    /// Looks at `mesh` from every viewpoint, by the definition and by brute force. On all threads.
+    ///
+    /// # Errors
+    /// Where brute force disagrees.
+    pub fn new(
+        mesh: &Mesh,
+        adjacency: &MeshAdjacency,
+        filter: EdgeFilter,
+        viewpoints: &[Viewpoint],
+    ) -> Result<Self, Box<Disagreement>> {
+        let brute_force = BruteForce::new(mesh, adjacency, filter);
+        let look = |brute_force: &mut BruteForce<'_>, &viewpoint: &Viewpoint| {
+            let (mut expected, mut found) = (Vec::new(), Vec::new());
+            contour_edges(mesh, adjacency, viewpoint, filter, &mut expected);
+            brute_force.extract(viewpoint, &mut found);
+            check("brute-force", viewpoint, &expected, &found)?;
+            Ok((viewpoint, expected))
+        };
+        let views = viewpoints.par_iter().map_init(|| brute_force.clone(), look);
+        Ok(Self { filter, views: views.collect::<Result<_, Box<Disagreement>>>()? })
+    }
+
+    /// Whether `patches`, made of the same mesh with the same filter, give the same from
+    /// everywhere. On all threads.
+    ///
+    /// # Errors
+    /// Where they do not.
+    pub fn compare(&self, patches: &PatchSet) -> Result<Agreement, Box<Disagreement>> {
+        assert_eq!(patches.edge_filter(), self.filter, "made with another filter");
+        let look = |(index, (viewpoint, expected)): (usize, &(Viewpoint, Vec<EdgeId>))| {
+            let (viewpoint, mut found) = (*viewpoint, Vec::new());
+            if index.is_multiple_of(ALL_WINGS_EVERY) {
+                extract_all_wings(patches, viewpoint, &mut found);
+                check("brute-force over patches", viewpoint, expected, &sorted(&found))?;
+            }
+            let statistics = extract_patches(patches, viewpoint, &mut found);
+            check("patches", viewpoint, expected, &sorted(&found))?;
+            Ok(Agreement {
+                viewpoints: 1,
+                contour_edges: expected.len(),
+                bounds_tested: statistics.super_patches_tested + statistics.patches_tested,
+                edges_tested: statistics.edges_tested,
+            })
+        };
+        let views = self.views.par_iter().enumerate().map(look);
+        views.try_reduce(Agreement::default, |a, b| Ok(a + b))
+    }
+}
+
+/// Looks at `mesh` from every viewpoint with every extractor.
+///
+/// # Errors
+/// Where one disagrees with [`contour_edges`].
 pub fn compare(
     mesh: &Mesh,
     adjacency: &MeshAdjacency,
     patches: &PatchSet,
     viewpoints: &[Viewpoint],
 ) -> Result<Agreement, Box<Disagreement>> {
-    let filter: EdgeFilter = patches.edge_filter();
-    let mut brute_force = BruteForce::new(mesh, adjacency, filter);
-    let (mut expected, mut found) = (Vec::new(), Vec::new());
-    let mut agreement = Agreement::default();
-    for &viewpoint in viewpoints {
-        contour_edges(mesh, adjacency, viewpoint, filter, &mut expected);
-        brute_force.extract(viewpoint, &mut found);
-        check("brute-force", viewpoint, &expected, &found)?;
-        extract_all_wings(patches, viewpoint, &mut found);
-        check("brute-force over patches", viewpoint, &expected, &sorted(&found))?;
-        let statistics = extract_patches(patches, viewpoint, &mut found);
-        check("patches", viewpoint, &expected, &sorted(&found))?;
-        agreement.viewpoints += 1;
-        agreement.contour_edges += expected.len();
-        agreement.edges_tested += statistics.edges_tested;
-    }
-    Ok(agreement)
+    Expected::new(mesh, adjacency, patches.edge_filter(), viewpoints)?.compare(patches)
 }
 
 fn sorted(edges: &[EdgeId]) -> Vec<EdgeId> {

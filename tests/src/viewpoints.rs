@@ -1,6 +1,7 @@
 //! From where meshes are looked at.
 
 use drypoint_mesh::{Mesh, Viewpoint};
+use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
 /// Distances of the measuring protocol of Tsiapkolis and Bénard (CGF 2024, §4.3), in units of half
@@ -82,6 +83,33 @@ pub fn near(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
         viewpoints.push(Viewpoint::at((a + b + c) / 3.0 + height * normal));
     }
     viewpoints
+}
+
+/// Viewpoints at random on, in and beside the surface: on vertices and faces, from a
+/// ten-millionth to one half of the longest side off them along their normals to either side, and
+/// anywhere in the box. The same each time. Empty for a mesh without triangles.
+pub fn near_at_random(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds().filter(|_| !mesh.triangles().is_empty()) else {
+        return Vec::new();
+    };
+    let (center, unit) = (bounds.center(), bounds.half_longest_side());
+    let mut rng = Rng::with_seed(0);
+    let viewpoint = |_| {
+        let triangle = mesh.triangles()[rng.usize(..mesh.triangles().len())];
+        let [a, b, c] = triangle.map(|v| mesh.position(v).as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let (s, t) = (rng.f64(), rng.f64());
+        let on_face = a + s * (b - a) + t * (1.0 - s) * (c - a);
+        let height = if rng.bool() { unit } else { -unit } * 10f64.powf(-7.0 * rng.f64());
+        Viewpoint::at(match rng.u8(..8) {
+            0 => a,
+            1 => on_face,
+            2 => center + unit * DVec3::from_array(std::array::from_fn(|_| 2.0 * rng.f64() - 1.0)),
+            3 => a + height * normal,
+            _ => on_face + height * normal,
+        })
+    };
+    (0..count).map(viewpoint).collect()
 }
 
 #[cfg(test)]

@@ -23,9 +23,10 @@ Usage: cargo xtask <COMMAND>
   test [-- ARGS]       check the machine, then run every test; ARGS go to cargo test
   tidy                 check lengths, layers in Cargo.toml, links and the other rules of CONTRIBUTING.md
   validate [ARGS]      compare every extractor with the definition on every shape and model
+  validate --boundary  look at every patch from where it is just culled, and at meshes from near by
   validate --mutants   break the bounds on purpose and compare who notices with docs/mutants.md;
                        with --bless: write that page
-  bench [ARGS]         time every extractor
+  bench [ARGS]         time every extractor; with --calibrate: what the cost model is made of
   ci                   what CI runs, in the same order
 
 Meshes for test, validate and bench are looked for in the folder DRYPOINT_MODELS.

@@ -30,6 +30,11 @@ impl<'t> Manifest<'t> {
         Some((value.get_ref().as_str()?, self.line(value.span().start)))
     }
 
+    /// Whether it is the root of a workspace, its own or that of others.
+    pub(crate) fn is_workspace(&self) -> bool {
+        at(&self.table, &["workspace"]).is_some()
+    }
+
     pub(crate) fn is_true(&self, path: &[&str]) -> bool {
         at(&self.table, path).and_then(|value| value.get_ref().as_bool()) == Some(true)
     }

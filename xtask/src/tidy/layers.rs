@@ -99,5 +99,7 @@ mod tests {
     fn a_new_package_is_given_its_place() {
         let core = mesh_with("").replace("drypoint-mesh", "drypoint-core");
         check(&[(XTASK, &core)], &["xtask/Cargo.toml:2 layers"]);
+        // What is no part of the workspace has none.
+        check(&[("fuzz/Cargo.toml", &format!("[workspace]\n{core}"))], &[]);
     }
 }

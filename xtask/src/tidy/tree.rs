@@ -71,10 +71,13 @@ impl Tree {
         self.files.iter().filter_map(|file| Some((file, file.rust.as_ref()?)))
     }
 
-    /// Every manifest of a package, with its file.
+    /// Every manifest of a package of the workspace, with its file; not of those that are a
+    /// workspace of their own.
     pub(crate) fn packages(&self) -> impl Iterator<Item = (&File, Manifest<'_>)> {
         let manifests = self.files.iter().filter(|file| file.path.ends_with("/Cargo.toml"));
-        manifests.filter_map(|file| Some((file, Manifest::parse(&file.text).ok()?)))
+        manifests
+            .filter_map(|file| Some((file, Manifest::parse(&file.text).ok()?)))
+            .filter(|(_, manifest)| !manifest.is_workspace())
     }
 
     /// The root's manifest; `None` if it is missing or does not parse.

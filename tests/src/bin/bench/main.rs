@@ -1,11 +1,14 @@
 //! `cargo xtask bench`: what patches cost and gain, and what a drawing takes. Runs alone, too.
 #![allow(clippy::print_stdout, reason = "the report is what this program is for")]
 
+mod calibrate;
+
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use clap::{Parser, value_parser};
 use drypoint_cpu::{BruteForce, extract_patches};
 use drypoint_fusion::{FusionParams, PatchSet, fuse};
 use drypoint_lines::{
@@ -17,54 +20,34 @@ use drypoint_tests::compare::compare;
 use drypoint_tests::{models, viewpoints};
 use glam::DVec3;
 
-const HELP: &str = "\
-Usage: cargo xtask bench [--partition EDGES] [--rounds N] [MESH FILE]...
-
-Times fusion, extraction and drawing on mesh files, or on those of the folder that DRYPOINT_MODELS
-names, or on built-in shapes. Every answer is compared with the definition before it is timed.
-
-  --partition EDGES  most edges fused as one group, from 2 (default 4096, as in the paper)
-  --rounds N         interleaved rounds of brute force and patches (default 5)";
-
+/// Times fusion, extraction and drawing on mesh files, or on those of the folder that DRYPOINT_MODELS
+/// names, or on built-in shapes. Every answer is compared with the definition before it is timed.
+#[derive(Parser)]
+#[command(name = "cargo xtask bench")]
 struct Options {
+    /// Of the published method, most edges fused as one group (4096 in the paper)
+    #[arg(long, value_name = "EDGES", default_value_t = 4096, value_parser = value_parser!(u32).range(2..))]
     partition: u32,
-    rounds: usize,
+    /// Interleaved rounds of what is compared
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..))]
+    rounds: u32,
+    /// Instead, measure what the cost model is made of: the times of an edge test, a patch test and a
+    /// survivor
+    #[arg(long)]
+    calibrate: bool,
+    /// Mesh files
+    #[arg(value_name = "MESH FILE")]
     files: Vec<PathBuf>,
 }
 
 fn main() -> ExitCode {
-    match options().and_then(|options| options.map_or(Ok(()), |options| run(&options))) {
+    match run(&Options::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
             eprintln!("bench: {why}");
             ExitCode::FAILURE
         }
     }
-}
-
-/// `None` if help was asked for and given.
-fn options() -> Result<Option<Options>, String> {
-    let mut options = Options { partition: 4096, rounds: 5, files: Vec::new() };
-    let mut args = std::env::args().skip(1);
-    while let Some(arg) = args.next() {
-        let mut number = |least: u32| {
-            let value = args.next().and_then(|value| value.parse().ok());
-            value.filter(|&n| n >= least).ok_or(format!("{arg} wants a number from {least}"))
-        };
-        match arg.as_str() {
-            "--partition" => options.partition = number(2)?,
-            "--rounds" => options.rounds = number(1)? as usize,
-            "--help" | "-h" => {
-                println!("{HELP}");
-                return Ok(None);
-            }
-            other if other.starts_with('-') => {
-                return Err(format!("no option {other:?}\n\n{HELP}"));
-            }
-            file => options.files.push(file.into()),
-        }
-    }
-    Ok(Some(options))
 }
 
 fn run(options: &Options) -> Result<(), String> {
@@ -88,6 +71,9 @@ fn run(options: &Options) -> Result<(), String> {
 }
 
 fn measure(mesh: &Mesh, options: &Options) -> Result<(), String> {
+    if options.calibrate {
+        return calibrate::run(mesh, options.rounds);
+    }
     let start = Instant::now();
     let adjacency = MeshAdjacency::new(mesh);
     println!("  adjacency {:.3} s", start.elapsed().as_secs_f64());
@@ -109,7 +95,7 @@ fn extract(
     mesh: &Mesh,
     adjacency: &MeshAdjacency,
     patches: &PatchSet,
-    rounds: usize,
+    rounds: u32,
 ) -> Result<(), String> {
     let viewpoints = viewpoints::protocol(mesh);
     let agreement = compare(mesh, adjacency, patches, &viewpoints)
