@@ -2,8 +2,8 @@
 //!
 //! Viewpoints at random do not see a bound half as large as it must be. So for each patch they are
 //! placed on the surface that divides what it culls from what it does not, |h| = t + tan α |p| of the
-//! stored floats, and a few roundings to either side; half of them in the direction in which one of
-//! the patch's own planes is hit first. From where the patch is culled, no edge of it may be a contour
+//! stored floats, and a few roundings to either side; half of them in the direction where one of the
+//! patch's own planes reaches farthest towards it. From where the patch is culled, no edge of it may be a contour
 //! edge, by exact predicates.
 
 use std::ops::Range;
@@ -115,14 +115,15 @@ impl Boundary<'_> {
         let (center, axis) = (bound.center.as_dvec3(), bound.axis.as_dvec3());
         let (apex, tan) = (f64::from(bound.apex_distance), f64::from(bound.tan_squared).sqrt());
         let side = if rng.bool() { 1.0 } else { -1.0 };
-        let across = if rng.bool() { self.hardest(side, rng) } else { direction(rng) };
-        let across = (across - axis.dot(across) * axis).normalize_or_zero();
         let is_orthographic = rng.u8(..16) == 0;
         // On an apex, or anywhere from a billionth of the mesh to ten thousand times its size.
         let distance = match rng.u8(..16) {
             0 => 0.0,
             _ => self.set.provenance().unit * 10f64.powf(13.0 * rng.f64() - 9.0),
         };
+        let w = if is_orthographic { 0.0 } else { 1.0 };
+        let across = if rng.bool() { self.hardest(side, distance, w) } else { direction(rng) };
+        let across = (across - axis.dot(across) * axis).normalize_or_zero();
         let height = if is_orthographic {
             tan * distance
         } else {
@@ -140,14 +141,23 @@ impl Boundary<'_> {
         })
     }
 
-    /// The direction in which a plane of one of the edges, drawn at random, is nearest to the cone
-    /// of that side: from there it is the first to be seen from the wrong side.
-    fn hardest(&self, side: f64, rng: &mut Rng) -> DVec3 {
-        let wing = self.set.wings()[rng.u32(self.edges.clone()) as usize];
-        let face = if rng.bool() { wing.left_face() } else { wing.right_face() };
-        let [a, b, c] = face.map(|vertex| self.set.positions()[vertex as usize].as_dvec3());
-        let normal = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
-        -side * normal.normalize_or_zero()
+    /// Where a plane of the edges reaches farthest into the cone of that side: the normal of that
+    /// plane, towards where it is met. At `distance` from the axis, plane j is on its own side of
+    /// viewpoints whose height is at least (w n·(p − o) + distance sin θ) / cos θ.
+    fn hardest(&self, side: f64, distance: f64, w: f64) -> DVec3 {
+        let (center, axis) = (self.bound.center.as_dvec3(), self.bound.axis.as_dvec3());
+        let reach = |face: [u32; 3]| {
+            let [a, b, c] = face.map(|vertex| self.set.positions()[vertex as usize].as_dvec3());
+            let normal = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
+            let normal = normal.normalize_or_zero();
+            let (cos, sin) = (normal.dot(axis), normal.cross(axis).length());
+            let height = side * w * normal.dot(a - center) + distance * sin;
+            (height / cos, -side * normal)
+        };
+        let wings = self.edges.clone().map(|place| self.set.wings()[place as usize]);
+        let faces = wings.flat_map(|wing| [wing.left_face(), wing.right_face()]);
+        let farthest = faces.map(reach).max_by(|a, b| a.0.total_cmp(&b.0));
+        farthest.map_or(DVec3::ZERO, |(_, towards)| towards)
     }
 
     /// Whether what is culled from `viewpoint` is no contour there.
