@@ -26,7 +26,7 @@ const GROWTH: f64 = 30.0;
 /// A step shorter than this, in the norm of the Hessian, has found a minimum.
 const SHORT_STEP: f64 = 0.3;
 
-/// Steps after which a center is taken as it is. Patches need some 30.
+/// Steps after which a center is taken as it is. Patches of the bunny need 43, on the mean.
 const MAX_STEPS: usize = 100;
 
 /// The line through an edge, in a frame where the start is the origin and its ball has radius 1.
@@ -49,7 +49,7 @@ impl Line {
 ///
 /// The square of its radius is at most 1e-8 `radius`² above the least of all centers, plus 1e-6
 /// times the square of the distance from `start` to where that is. `start` itself if `radius` is 0
-/// or not finite. Some 30 scans.
+/// or not finite. Some 40 steps of two scans each.
 pub(crate) fn center_of_least_ball(
     start: DVec3,
     radius: f64,

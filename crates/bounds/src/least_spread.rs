@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{NormalCone, Plane};
 
-/// Scans after which a place is taken as it is. Patches need 4 to 9.
+/// Scans after which a place is taken as it is. Patches of the bunny need 6, on the mean.
 const MAX_SCANS: usize = 24;
 
 /// How close to the least cost the search ends, as a share of it.

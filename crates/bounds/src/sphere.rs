@@ -35,7 +35,7 @@ impl Sphere {
     }
 
     /// The smallest ball that meets the line through each edge: never larger than the Reduced Sphere,
-    /// for some 30 scans instead of 2. At the origin if there are none.
+    /// for some 90 scans instead of 2. At the origin if there are none.
     ///
     /// A convex program, solved to where r² is at most 1e-8 R² + 1e-6 d² above the least of any
     /// ball's, R being the radius of the Reduced Sphere and d how far that ball's center is from its

@@ -163,7 +163,7 @@ pub(super) const BOUNDS: &[Mutant] = &[
         "0.5 * (high - low)",
     ),
     mutant(
-        "`DoubleCone::tight`: α about the axis before it is rounded",
+        "`DoubleCone::about`: α about another axis",
         TIGHT,
         "NormalCone::around(axis, planes",
         "NormalCone::minimal(planes",
