@@ -4,20 +4,41 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use drypoint_lines::LineClass;
-use drypoint_mesh::EdgeFilter;
+use drypoint_mesh::{EdgeFilter, shapes};
 use glam::DVec3;
+
+use crate::fusion::FusionArgs;
 
 /// Draws the contours of triangle meshes as clean vectors, hidden lines removed
 #[derive(Debug, Parser)]
-#[command(name = "drypoint", version, after_help = EXAMPLES)]
+#[command(name = "drypoint", version, after_help = after_help())]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
-const EXAMPLES: &str = "\
-MODEL is an OBJ, PLY, STL, glTF or GLB file, or shape:NAME[:TRIANGLES] for a built-in shape.
+/// The built-in shapes, examples, and what the exit status means.
+fn after_help() -> String {
+    /// Most characters of a line.
+    const WIDTH: usize = 96;
+    let mut shapes = String::from(" ");
+    let mut column = 1;
+    for name in shapes::NAMES {
+        if column + name.len() + 2 > WIDTH {
+            shapes += "\n ";
+            column = 1;
+        }
+        shapes += &format!(" {name}");
+        column += name.len() + 1;
+    }
+    format!("{MODELS}\n{shapes}\n\n{EXAMPLES}")
+}
 
+const MODELS: &str = "\
+MODEL is an OBJ, PLY, STL, glTF or GLB file, or shape:NAME[:TRIANGLES] for a built-in shape, of
+20000 triangles unless told otherwise, where NAME is one of";
+
+const EXAMPLES: &str = "\
 Examples:
   drypoint draw                                      a built-in shape, to torus-knot.svg
   drypoint draw bunny.obj -o bunny.svg
@@ -44,22 +65,51 @@ Examples:
   drypoint draw bunny.obj -o bunny.svg
   drypoint draw part.stl --lines contour,crease --crease-angle 20 --view iso --ortho --up 0,0,1
   drypoint draw hall.obj --eye 0,2,0 --target 10,2,0 --fov 70 -o hall.png --size 1600x900
-  drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png")]
+  drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png
+  drypoint draw bunny.obj --show patches --preset fast -o bunny.png
+  drypoint draw bunny.patches --model bunny.obj --show survivors --view front -o bunny.png
+
+With --json prints one object: for each class of lines chains, segments, visible_length and
+hidden_length in pixels; and with --show patches or survivors in `patches` the numbers of edges,
+patches, super_patches, survivors and edges_tested from this view.")]
 pub(crate) struct DrawArgs {
-    /// Mesh file, or `shape:NAME[:TRIANGLES]`
+    /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file with --model
     #[arg(default_value = "shape:torus-knot:20000")]
     pub(crate) model: PathBuf,
     /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg,
     /// in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Print chains, segments, visible and hidden length in pixels of each class as JSON
+    /// The mesh that a .patches file was built from: its triangles hide lines
+    #[arg(long = "model", value_name = "MESH")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// What to draw
+    #[arg(long, value_enum, default_value = "lines")]
+    pub(crate) show: Show,
+    /// Print what was drawn as JSON
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) view: ViewArgs,
     #[command(flatten)]
     pub(crate) lines: LineArgs,
+    /// With --show: edges to group, those that can be seen as contours, or all [default: convex, or
+    /// those of the .patches file]
+    #[arg(long, value_enum, help_heading = "Patches")]
+    pub(crate) edges: Option<Edges>,
+    #[command(flatten)]
+    pub(crate) fusion: FusionArgs,
+}
+
+/// What is on the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Show {
+    /// Lines alone
+    Lines,
+    /// Lines over the surface, each edge's share of it in the color of its patch
+    Patches,
+    /// As patches, but only those that may hold a contour edge from here; the rest is grey
+    Survivors,
 }
 
 #[derive(Debug, Args)]
@@ -76,10 +126,10 @@ pub(crate) struct ViewArgs {
     /// lies ahead]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number)]
+    /// Vertical field of view in degrees [default: 30]
+    #[arg(long, value_name = "DEGREES", value_parser = number, conflicts_with = "ortho")]
     #[arg(allow_hyphen_values = true)]
-    pub(crate) fov: f64,
+    pub(crate) fov: Option<f64>,
     /// Look from this side, at a distance that fills the page [default: iso]
     #[arg(long, value_enum, conflicts_with_all = ["azimuth", "elevation"])]
     pub(crate) view: Option<Side>,
@@ -115,10 +165,9 @@ pub(crate) struct LineArgs {
     /// Classes of lines to draw
     #[arg(long, value_enum, value_delimiter = ',', default_values = ["contour", "boundary"])]
     pub(crate) lines: Vec<Class>,
-    /// Draw edges that bend by this angle or more as creases, in degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = number)]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) crease_angle: f64,
+    /// With --lines crease: draw edges that bend by this angle or more, in degrees [default: 30]
+    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) crease_angle: Option<f64>,
     /// What to do with hidden lines
     #[arg(long, value_enum, default_value = "none")]
     pub(crate) hidden: Hidden,
@@ -143,11 +192,14 @@ pub(crate) struct LineArgs {
 #[command(after_help = "\
 Examples:
   drypoint patches bunny.obj -o bunny.patches
-  drypoint patches bunny.obj -o bunny.patches --sphere mean --partition 512 --json
+  drypoint patches hall.obj -o hall.patches --preset best --profile near --levels 2
+  drypoint patches bunny.obj -o bunny.patches --preset paper --bound mean --partition 512 --json
   drypoint extract bunny.patches --eye 0,0.1,2 --json
 
-With --json prints one object: edges, patches, mean_half_angle and max_half_angle in degrees,
-mean_t in the file's unit, expected_cost in edge tests a view, build_seconds, peak_memory in bytes.")]
+With --json prints one object: edges, patches, super_patches, always_tested (edges in no patch),
+mean_half_angle and max_half_angle in degrees, mean_t in the file's unit, expected_cost in edge
+tests a view, build_seconds, peak_memory in bytes or null, and what was asked for: preset, profile,
+bound, levels, runtime.")]
 pub(crate) struct PatchesArgs {
     /// Mesh file, or `shape:NAME[:TRIANGLES]`
     pub(crate) model: PathBuf,
@@ -164,19 +216,6 @@ pub(crate) struct PatchesArgs {
     pub(crate) fusion: FusionArgs,
 }
 
-/// How patches are built.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Fusion")]
-pub(crate) struct FusionArgs {
-    /// Sphere of a patch's bound [default: reduced]
-    #[arg(long, value_enum)]
-    pub(crate) sphere: Option<SphereKind>,
-    /// Most edges that are fused as one group: more is slower and better; none for all at once
-    /// [default: 4096]
-    #[arg(long, value_name = "EDGES|none", value_parser = partition)]
-    pub(crate) partition: Option<Partition>,
-}
-
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("viewpoint").required(true).args(["eye", "direction"])))]
 #[command(after_help = "\
@@ -187,7 +226,8 @@ Examples:
 
 Prints a pair of vertices a line, lower index first, sorted; what was tested goes to standard error.
 With --json prints one object: method, edges, patches, patches_tested, patches_accepted,
-edges_tested, contour_edges, contour. Vertices are counted from 0 in the file's own order (OBJ: v
+super_patches, super_patches_tested, super_patches_accepted, edges_tested, contour_edges, contour.
+Vertices are counted from 0 in the file's own order (OBJ: v
 lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices
 at one position the first is named.")]
 pub(crate) struct ExtractArgs {
@@ -233,13 +273,17 @@ pub(crate) enum Side {
     Right,
     Top,
     Bottom,
+    /// From the front, the right and above, each as much
     Iso,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Class {
+    /// Where the surface turns away from the viewer
     Contour,
+    /// Where the surface ends
     Boundary,
+    /// Where the surface bends sharply
     Crease,
 }
 
@@ -255,20 +299,27 @@ impl From<Class> for LineClass {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Hidden {
+    /// Left out
     None,
+    /// Dashed and thin
     Dashed,
+    /// Thin
     Solid,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
+    /// Tests every edge
     BruteForce,
+    /// Tests the edges of patches that may hold a contour edge
     Patches,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Edges {
+    /// Those that a closed solid can show as contours from outside
     Convex,
+    /// Every edge, concave and boundary ones too
     All,
 }
 
@@ -280,16 +331,6 @@ impl From<Edges> for EdgeFilter {
         }
     }
 }
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum SphereKind {
-    Mean,
-    Reduced,
-}
-
-/// Most edges fused as one group; `None` for no limit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Partition(pub(crate) Option<u32>);
 
 fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
@@ -325,12 +366,4 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         _ => Err(format!("'{text}' is no number of pixels from 1 to {MOST}")),
     };
     Ok([side(parts.0)?, side(parts.1)?])
-}
-
-fn partition(text: &str) -> Result<Partition, String> {
-    match text.parse() {
-        _ if text == "none" => Ok(Partition(None)),
-        Ok(edges) if edges >= 2 => Ok(Partition(Some(edges))),
-        _ => Err("a number of edges from 2, or none, is wanted".to_owned()),
-    }
 }

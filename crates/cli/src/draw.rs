@@ -3,20 +3,36 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use drypoint_cpu::extract_patches;
+use drypoint_fusion::PatchSet;
 use drypoint_lines::{
     Camera, Color, Drawing, HiddenLines, Layer, LineOptions, Occluders, Segments, Style,
     VisibilityParams, filter_for_drawing, to_png, to_svg,
 };
-use drypoint_mesh::{MeshAdjacency, contour_edges};
+use drypoint_mesh::{EdgeFilter, EdgeId, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
-use crate::args::{Class, DrawArgs, Hidden, LineArgs};
+use crate::args::{Class, DrawArgs, Hidden, LineArgs, Show};
 use crate::output::{Output, print_json, tell};
+use crate::patches;
 use crate::progress::Stage;
+use crate::show::{self, Shown};
 use crate::source::{self, Source};
 use crate::view;
 
-/// What is on the page of one class of lines, in the shape that scripts read.
+/// Degrees from which an edge is a crease, unless the user says otherwise.
+const CREASE_ANGLE: f64 = 30.0;
+
+/// What is on the page, in the shape that scripts read.
+#[derive(Debug, Serialize)]
+struct Report {
+    #[serde(flatten)]
+    lines: BTreeMap<&'static str, Drawn>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    patches: Option<show::Counts>,
+}
+
+/// What is on the page of one class of lines.
 #[derive(Debug, Serialize)]
 struct Drawn {
     chains: usize,
@@ -36,6 +52,7 @@ enum Format {
 pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     let style = style(&args.lines)?;
     let options = options(&args.lines)?;
+    let shown = shown(args)?;
     let path = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.svg", source::stem(&args.model))),
@@ -45,18 +62,26 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     }
     // A place that cannot be written is told before the work, not after.
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
-    let source = Source::load(&args.model)?;
+    let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = source.adjacency();
     if adjacency.report().degenerate == adjacency.report().faces {
         return Err(format!("{}: no face has any area, so there is nothing to see", source.name));
     }
-    let drawing = trace(&source, &adjacency, &camera, (&args.lines, &options));
-    if drawing.layers.iter().all(|layer| layer.visible_length() == 0.0) {
+    let patches = match loaded {
+        None if shown.is_some() => Some(build(args, &source, &adjacency)?),
+        Some(patches) => Some(chosen(args, patches)?),
+        None => None,
+    };
+    let scene = Scene { source: &source, adjacency: &adjacency, camera: &camera };
+    let drawing = scene.draw(patches.as_ref(), shown, (&args.lines, &options));
+    if drawing.layers.iter().all(|layer| layer.visible_length() == 0.0) && drawing.areas.is_empty()
+    {
         tell(&format!("drypoint: no line of {} is visible on the page", source.name));
     }
+    let title = source::stem(&args.model);
     let picture = match format {
-        Format::Svg => to_svg(&drawing, &style, &source.stem).into_bytes(),
+        Format::Svg => to_svg(&drawing, &style, &title).into_bytes(),
         Format::Png => {
             let _stage = Stage::new("rasterising");
             to_png(&drawing, &style).map_err(|error| error.to_string())?
@@ -64,7 +89,9 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     };
     // First what may fail, so that no picture is left behind by a run that did.
     if args.json {
-        print_json(&drawn(&drawing))?;
+        let patches = patches.as_ref().filter(|_| shown.is_some());
+        let patches = patches.map(|patches| show::counts(patches, camera.viewpoint()));
+        print_json(&Report { lines: drawn(&drawing), patches })?;
     }
     output.write(&picture)?;
     if args.output.is_none() {
@@ -73,39 +100,106 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     Ok(())
 }
 
-/// Finds the lines and what hides them.
-fn trace(
-    source: &Source,
-    adjacency: &MeshAdjacency,
-    camera: &Camera,
-    (args, options): (&LineArgs, &LineOptions),
-) -> Drawing {
-    let mesh = source.mesh();
-    let mut contours = Vec::new();
-    if args.lines.contains(&Class::Contour) {
-        let filter = filter_for_drawing(mesh, adjacency, camera.viewpoint());
-        contour_edges(mesh, adjacency, camera.viewpoint(), filter, &mut contours);
-    }
-    let segments = Segments::new(mesh, adjacency, &contours, options);
-    let occluders = {
-        let _stage = Stage::new("sorting faces");
-        Occluders::new(mesh, adjacency)
+/// What of the decomposition is asked for; options that would change nothing are refused.
+fn shown(args: &DrawArgs) -> Result<Option<Shown>, String> {
+    let shown = match args.show {
+        Show::Lines => None,
+        Show::Patches => Some(Shown::Patches),
+        Show::Survivors => Some(Shown::Survivors),
     };
-    let _stage = Stage::new("finding what is visible");
-    let params = VisibilityParams { drop_specks: args.specks, ..Default::default() };
-    let mut drawing = Drawing::new(&occluders, &segments, camera, &params);
-    drawing.layers.retain(|layer| args.lines.iter().any(|&class| layer.class == class.into()));
-    drawing
+    let edges = args.edges.map(|_| "--edges");
+    if let Some(option) = args.fusion.first_given().or(edges).filter(|_| shown.is_none()) {
+        return Err(format!("{option}: is for --show patches and --show survivors"));
+    }
+    if shown.is_some() {
+        // What contradicts itself is told before the mesh is read.
+        args.fusion.params()?;
+    }
+    Ok(shown)
+}
+
+/// Builds patches to show.
+fn build(args: &DrawArgs, source: &Source, adjacency: &MeshAdjacency) -> Result<PatchSet, String> {
+    let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
+    patches::build(source, adjacency, filter, &args.fusion)
+}
+
+/// The patches of a file, if no option asks for others.
+fn chosen(args: &DrawArgs, patches: PatchSet) -> Result<PatchSet, String> {
+    match args.fusion.first_given() {
+        Some(option) => {
+            Err(format!("{option}: the patches of {} are built already", args.model.display()))
+        }
+        None => source::holding(patches, args.edges, &args.model),
+    }
+}
+
+/// What is drawn, and from where.
+struct Scene<'a> {
+    source: &'a Source,
+    adjacency: &'a MeshAdjacency,
+    camera: &'a Camera,
+}
+
+impl Scene<'_> {
+    /// Finds the lines, what hides them, and what of the decomposition is visible.
+    fn draw(
+        &self,
+        patches: Option<&PatchSet>,
+        shown: Option<Shown>,
+        (args, options): (&LineArgs, &LineOptions),
+    ) -> Drawing {
+        let Self { adjacency, camera, .. } = *self;
+        let mesh = self.source.mesh();
+        let wanted = args.lines.contains(&Class::Contour);
+        let contours = if wanted { self.contours(patches) } else { Vec::new() };
+        let segments = Segments::new(mesh, adjacency, &contours, options);
+        let occluders = {
+            let _stage = Stage::new("sorting faces");
+            Occluders::new(mesh, adjacency)
+        };
+        let _stage = Stage::new("finding what is visible");
+        let params = VisibilityParams { drop_specks: args.specks, ..Default::default() };
+        let mut drawing = Drawing::new(&occluders, &segments, camera, &params);
+        drawing.layers.retain(|layer| args.lines.iter().any(|&class| layer.class == class.into()));
+        if let (Some(shown), Some(patches)) = (shown, patches) {
+            drawing.areas = show::areas(patches, &occluders, adjacency, camera, shown);
+        }
+        drawing
+    }
+
+    /// The contour edges that a drawing needs. From the patches where they hold all of those; the
+    /// mesh says the same.
+    fn contours(&self, patches: Option<&PatchSet>) -> Vec<EdgeId> {
+        let (mesh, viewpoint) = (self.source.mesh(), self.camera.viewpoint());
+        let filter = filter_for_drawing(mesh, self.adjacency, viewpoint);
+        let mut contours = Vec::new();
+        match patches.filter(|patches| [EdgeFilter::All, filter].contains(&patches.edge_filter())) {
+            Some(patches) => {
+                extract_patches(patches, viewpoint, &mut contours);
+                contours.retain(|&edge| self.adjacency.keeps(edge, filter));
+            }
+            None => contour_edges(mesh, self.adjacency, viewpoint, filter, &mut contours),
+        }
+        contours
+    }
 }
 
 fn options(args: &LineArgs) -> Result<LineOptions, String> {
-    if !(0.0..=180.0).contains(&args.crease_angle) {
-        return Err(format!("--crease-angle: {} is not within 0 and 180", args.crease_angle));
-    }
     let crease = args.lines.contains(&Class::Crease);
+    match args.crease_angle {
+        Some(angle) if !(0.0..=180.0).contains(&angle) => {
+            return Err(format!("--crease-angle: {angle} is not within 0 and 180"));
+        }
+        Some(_) if !crease => {
+            return Err("--crease-angle: no creases are drawn without --lines crease".to_owned());
+        }
+        _ => {}
+    }
+    let least = args.crease_angle.unwrap_or(CREASE_ANGLE).to_radians();
     Ok(LineOptions {
         boundary: args.lines.contains(&Class::Boundary),
-        crease_angle: crease.then(|| args.crease_angle.to_radians()),
+        crease_angle: crease.then_some(least),
     })
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::args::{ExtractArgs, Method};
 use crate::output::{print, print_json};
 use crate::patches;
-use crate::source::{Source, is_patches_file, load_patches};
+use crate::source::{Source, holding, is_patches, load_patches};
 
 /// What was found, in the shape that scripts read.
 #[derive(Debug, Serialize)]
@@ -19,6 +19,9 @@ struct Found {
     patches: usize,
     patches_tested: usize,
     patches_accepted: usize,
+    super_patches: usize,
+    super_patches_tested: usize,
+    super_patches_accepted: usize,
     edges_tested: usize,
     contour_edges: usize,
     contour: Vec<[u32; 2]>,
@@ -26,16 +29,13 @@ struct Found {
 
 pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     let viewpoint = viewpoint(args)?;
-    let fuses = args.method == Some(Method::Patches) && !is_patches_file(&args.model);
-    if !fuses && (args.fusion.sphere.is_some() || args.fusion.partition.is_some()) {
-        let when = "are for building patches: --method patches on a mesh";
-        return Err(format!("--sphere and --partition {when}"));
+    let has_patches = is_patches(&args.model);
+    let fuses = args.method == Some(Method::Patches) && !has_patches;
+    if let Some(option) = args.fusion.first_given().filter(|_| !fuses) {
+        return Err(format!("{option}: is for building patches: --method patches on a mesh"));
     }
-    let found = if is_patches_file(&args.model) {
-        from_patch_file(args, viewpoint)?
-    } else {
-        from_mesh(args, viewpoint)?
-    };
+    let found =
+        if has_patches { from_patch_file(args, viewpoint)? } else { from_mesh(args, viewpoint)? };
     if args.json {
         return print_json(&found);
     }
@@ -75,23 +75,11 @@ fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> 
     let mut brute_force = BruteForce::new(source.mesh(), &adjacency, filter);
     let statistics = brute_force.extract(viewpoint, &mut contours);
     let ends = contours.iter().map(|&edge| adjacency.wing(edge).ends());
-    Ok(found("brute-force", (brute_force.edge_count(), 0), statistics, ends.collect()))
+    Ok(found("brute-force", brute_force.edge_count(), statistics, ends.collect()))
 }
 
 fn from_patch_file(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
-    let patches = load_patches(&args.model)?;
-    if let Some(wanted) = args.edges
-        && EdgeFilter::from(wanted) != patches.edge_filter()
-    {
-        return Err(format!(
-            "{}: holds the patches of {} edges; leave --edges out, or build it anew",
-            args.model.display(),
-            match patches.edge_filter() {
-                EdgeFilter::Convex => "convex",
-                EdgeFilter::All => "all",
-            }
-        ));
-    }
+    let patches = holding(load_patches(&args.model)?, args.edges, &args.model)?;
     let mut contours = Vec::new();
     if args.method == Some(Method::BruteForce) {
         let statistics = extract_all_wings(&patches, viewpoint, &mut contours);
@@ -110,13 +98,15 @@ fn with_patches(patches: &PatchSet, statistics: Statistics, contours: &[EdgeId])
     let wings = patches.wings().iter().zip(patches.edge_ids());
     let seen = wings.filter(|(_, edge)| is_contour.binary_search(edge).is_ok());
     let pairs = seen.map(|(wing, _)| wing.ends()).collect();
-    found("patches", (patches.wings().len(), patches.patches().len()), statistics, pairs)
+    let found = found("patches", patches.wings().len(), statistics, pairs);
+    let super_patches = patches.super_patches().len();
+    Found { patches: patches.patches().len(), super_patches, ..found }
 }
 
 /// Sorts the pairs and leaves one of those that several wings of a non-manifold edge share.
 fn found(
     method: &'static str,
-    (edges, patches): (usize, usize),
+    edges: usize,
     statistics: Statistics,
     mut contour: Vec<[u32; 2]>,
 ) -> Found {
@@ -125,9 +115,12 @@ fn found(
     Found {
         method,
         edges,
-        patches,
+        patches: 0,
         patches_tested: statistics.patches_tested,
         patches_accepted: statistics.patches_accepted,
+        super_patches: 0,
+        super_patches_tested: statistics.super_patches_tested,
+        super_patches_accepted: statistics.super_patches_accepted,
         edges_tested: statistics.edges_tested,
         contour_edges: contour.len(),
         contour,

@@ -3,10 +3,13 @@
 mod args;
 mod draw;
 mod extract;
+mod fusion;
 mod info;
 mod output;
+mod palette;
 mod patches;
 mod progress;
+mod show;
 mod source;
 mod view;
 

@@ -4,20 +4,24 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use drypoint_fusion::{FusionParams, PatchSet, Progress, fuse};
+use drypoint_fusion::{Levels, PatchSet, Progress, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency};
 use serde::Serialize;
 
-use crate::args::{FusionArgs, PatchesArgs, SphereKind};
+use crate::args::PatchesArgs;
+use crate::fusion::{FusionArgs, bound_name, profile_name, runtime_name};
 use crate::output::{Output, print_json, tell};
 use crate::progress::Stage;
-use crate::source::{PATCHES_EXTENSION, Source, is_patches_file};
+use crate::source::{PATCHES_EXTENSION, Source, is_named_patches};
 
 /// What was built, in the shape that scripts read.
 #[derive(Debug, Serialize)]
 struct Built {
     edges: usize,
     patches: usize,
+    super_patches: usize,
+    /// Edges in no patch.
+    always_tested: usize,
     /// In degrees.
     mean_half_angle: f64,
     /// In degrees.
@@ -29,6 +33,11 @@ struct Built {
     build_seconds: f64,
     /// In bytes; `null` where the system does not tell.
     peak_memory: Option<u64>,
+    preset: String,
+    profile: String,
+    bound: String,
+    levels: u8,
+    runtime: String,
 }
 
 pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
@@ -36,9 +45,11 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
     if args.json && args.output == Path::new("-") {
         return Err("--json: standard output takes the patches or the JSON, not both".to_owned());
     }
+    // What contradicts itself is told before the mesh is read.
+    args.fusion.params()?;
     let output = Output::open(&args.output)?;
-    // By this name `extract` knows it, and no mesh is overwritten by its own patches.
-    if matches!(output, Output::File(_)) && !is_patches_file(&args.output) {
+    // So that no mesh is overwritten by its own patches.
+    if matches!(output, Output::File(_)) && !is_named_patches(&args.output) {
         return Err(format!("{name}: a patch file's name ends in .{PATCHES_EXTENSION}"));
     }
     let source = Source::load(&args.model)?;
@@ -46,17 +57,7 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
     let adjacency = source.adjacency();
     let patches = build(&source, &adjacency, args.edges.into(), &args.fusion)?;
     let build_seconds = start.elapsed().as_secs_f64();
-    let summary = patches.summary();
-    let built = Built {
-        edges: patches.wings().len(),
-        patches: patches.patches().len(),
-        mean_half_angle: summary.mean_half_angle.to_degrees(),
-        max_half_angle: summary.max_half_angle.to_degrees(),
-        mean_t: summary.mean_apex_distance,
-        expected_cost: patches.expected_cost(),
-        build_seconds,
-        peak_memory: peak_memory(),
-    };
+    let built = describe(&patches, &args.fusion, build_seconds);
     // First what may fail, so that no file is left behind by a run that did.
     if args.json {
         print_json(&built)?;
@@ -71,6 +72,31 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
     Ok(())
 }
 
+fn describe(patches: &PatchSet, args: &FusionArgs, build_seconds: f64) -> Built {
+    let summary = patches.summary();
+    let (params, preset) = (patches.provenance().params, args.preset_name());
+    Built {
+        edges: patches.wings().len(),
+        patches: patches.patches().len(),
+        super_patches: patches.super_patches().len(),
+        always_tested: patches.always_tested().len(),
+        mean_half_angle: summary.mean_half_angle.to_degrees(),
+        max_half_angle: summary.max_half_angle.to_degrees(),
+        mean_t: summary.mean_apex_distance,
+        expected_cost: patches.expected_cost(),
+        build_seconds,
+        peak_memory: peak_memory(),
+        profile: profile_name(&preset, &params.views),
+        preset,
+        bound: bound_name(params.bound),
+        levels: match params.levels {
+            Levels::One => 1,
+            Levels::Two => 2,
+        },
+        runtime: runtime_name(&params.cost),
+    }
+}
+
 /// Fuses the edges of a mesh, with progress. Ctrl-C ends the program, not only the fusion.
 pub(crate) fn build(
     source: &Source,
@@ -78,11 +104,7 @@ pub(crate) fn build(
     filter: EdgeFilter,
     args: &FusionArgs,
 ) -> Result<PatchSet, String> {
-    let params = match args.sphere {
-        Some(SphereKind::Mean) => FusionParams::PAPER_MEAN,
-        Some(SphereKind::Reduced) | None => FusionParams::PAPER,
-    };
-    let params = args.partition.map_or(params, |most| params.with_max_partition(most.0));
+    let params = args.params()?;
     let stage = Stage::with_length("building patches", adjacency.edges(filter).count() as u64);
     let progress = |progress: Progress| {
         stage.set(progress.edges_done as u64);

@@ -1,14 +1,20 @@
 //! Where the mesh comes from: a file, or a shape that is built in.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 
-use drypoint_fusion::PatchSet;
-use drypoint_mesh::{Mesh, MeshAdjacency, io, shapes};
+use drypoint_fusion::{PatchFileError, PatchSet, mesh_hash};
+use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, io, shapes};
 
+use crate::args::Edges;
 use crate::progress::Stage;
 
 /// Extension of the files that `drypoint patches` writes.
 pub(crate) const PATCHES_EXTENSION: &str = "patches";
+
+/// How much of a file is read to see whether it holds patches.
+const SNIFFED: u64 = 4096;
 
 /// Triangles of a built-in shape if the user names no count.
 const SHAPE_TRIANGLES: usize = 20_000;
@@ -20,8 +26,6 @@ const MOST_SHAPE_TRIANGLES: usize = 10_000_000;
 pub(crate) struct Source {
     /// As the user gave it, for messages.
     pub(crate) name: String,
-    /// File name without folder and extension, or the shape's name.
-    pub(crate) stem: String,
     pub(crate) model: io::Model,
 }
 
@@ -34,16 +38,41 @@ impl Source {
             let (shape, mesh) = build_shape(shape)?;
             let triangles = 0..u32::try_from(mesh.triangles().len()).map_err(|e| e.to_string())?;
             let parts = vec![io::Part { name: shape.to_owned(), triangles }];
-            return Ok(Self { stem: stem(model), model: io::Model { mesh, parts }, name });
+            return Ok(Self { model: io::Model { mesh, parts }, name });
         }
-        if is_patches_file(model) {
-            return Err(format!("{name}: is a patch file; this command needs the mesh itself"));
+        if is_patches(model) {
+            return Err(format!("{name}: is a patch file; a mesh is wanted here"));
         }
         if model.is_dir() {
             return Err(format!("{name}: is a folder, not a mesh file"));
         }
         let read = io::read(model).map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self { name, stem: stem(model), model: read })
+        Ok(Self { name, model: read })
+    }
+
+    /// Reads a mesh for drawing, and with it the patches if `model` is a .patches file: that holds
+    /// edges but no triangles, which hide lines, so `mesh` must be what it was built from.
+    pub(crate) fn load_with_patches(
+        model: &Path,
+        mesh: Option<&Path>,
+    ) -> Result<(Self, Option<PatchSet>), String> {
+        let name = model.display();
+        match (is_patches(model), mesh) {
+            (false, None) => Ok((Self::load(model)?, None)),
+            (false, Some(_)) => Err(format!("--model: {name} is a mesh itself, no .patches file")),
+            (true, None) => Err(format!(
+                "{name}: holds no triangles, which hide lines; give the mesh it was built from \
+                 with --model"
+            )),
+            (true, Some(mesh)) => {
+                let patches = load_patches(model)?;
+                let source = Self::load(mesh)?;
+                if mesh_hash(source.mesh()) != patches.provenance().mesh_hash {
+                    return Err(format!("{name}: was not built from {}", source.name));
+                }
+                Ok((source, Some(patches)))
+            }
+        }
     }
 
     pub(crate) fn mesh(&self) -> &Mesh {
@@ -66,17 +95,51 @@ pub(crate) fn stem(model: &Path) -> String {
     }
 }
 
-/// Whether `path` is meant as a file that `drypoint patches` wrote.
-pub(crate) fn is_patches_file(path: &Path) -> bool {
+/// Whether `path` is named as a file that `drypoint patches` writes.
+pub(crate) fn is_named_patches(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(PATCHES_EXTENSION))
+}
+
+/// Whether a file is one that `drypoint patches` wrote: by how it begins, or by its name, so that a
+/// damaged one is told as such. Never reads from a pipe, which could not be read again.
+pub(crate) fn is_patches(path: &Path) -> bool {
+    let begins_so = || {
+        let file = File::open(path).ok().filter(|_| path.is_file())?;
+        let mut start = Vec::new();
+        file.take(SNIFFED).read_to_end(&mut start).ok()?;
+        let foreign = matches!(PatchSet::from_bytes(&start), Err(PatchFileError::Foreign));
+        Some(!start.is_empty() && !foreign)
+    };
+    is_named_patches(path) || begins_so().unwrap_or(false)
 }
 
 /// Loads a file that `drypoint patches` wrote.
 pub(crate) fn load_patches(path: &Path) -> Result<PatchSet, String> {
     let _stage = Stage::new(&format!("reading {}", path.display()));
     let fail = |why: &dyn std::fmt::Display| format!("{}: {why}", path.display());
+    if path.is_dir() {
+        return Err(fail(&"is a folder, not a patch file"));
+    }
     let bytes = std::fs::read(path).map_err(|error| fail(&error))?;
     PatchSet::from_bytes(&bytes).map_err(|error| fail(&error))
+}
+
+/// The patches of the file `path`, if they are those of the edges that are `wanted`.
+pub(crate) fn holding(
+    patches: PatchSet,
+    wanted: Option<Edges>,
+    path: &Path,
+) -> Result<PatchSet, String> {
+    let filter = patches.edge_filter();
+    if wanted.is_none_or(|wanted| filter == wanted.into()) {
+        return Ok(patches);
+    }
+    let held = match filter {
+        EdgeFilter::Convex => "convex",
+        EdgeFilter::All => "all",
+    };
+    let name = path.display();
+    Err(format!("{name}: holds the patches of {held} edges; leave --edges out, or build it anew"))
 }
 
 fn build_shape(shape: &str) -> Result<(&str, Mesh), String> {

@@ -6,6 +6,9 @@ use glam::{DMat3, DVec3};
 
 use crate::args::{Side, ViewArgs};
 
+/// In degrees, unless the user says otherwise.
+const FIELD_OF_VIEW: f64 = 30.0;
+
 /// Within this many degrees of straight up or down the up axis gives no direction on the page.
 const NEARLY_VERTICAL: f64 = 1e-6;
 
@@ -41,6 +44,7 @@ fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError
         Some(eye) => (eye - target, args.up),
         None => direction(args),
     };
+    let fov = args.fov.unwrap_or(FIELD_OF_VIEW);
     let ahead = towards_viewer.normalize_or_zero();
     let points = || {
         let mesh = mesh.triangles().iter().flatten().map(|&v| mesh.position(v).as_dvec3());
@@ -52,11 +56,11 @@ fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError
     match (args.eye, args.distance, args.height) {
         (_, _, Some(height)) => Camera::orthographic(towards_viewer, target, up, height, page),
         _ if args.ortho => Camera::fit_orthographic(points(), towards_viewer, up, page),
-        (Some(eye), ..) => Camera::perspective(eye, target, up, args.fov, page),
+        (Some(eye), ..) => Camera::perspective(eye, target, up, fov, page),
         (None, Some(distance), _) => {
-            Camera::perspective(target + distance * ahead, target, up, args.fov, page)
+            Camera::perspective(target + distance * ahead, target, up, fov, page)
         }
-        _ => Camera::fit_perspective(points(), towards_viewer, up, args.fov, page),
+        _ => Camera::fit_perspective(points(), towards_viewer, up, fov, page),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Everything that is on the page, and how to ink it.
 
 use drypoint_mesh::Mesh;
+use glam::DVec2;
 
 use crate::specks::specks;
 use crate::trace::{self, IsHidden};
@@ -13,6 +14,8 @@ pub struct Drawing {
     pub page: Page,
     /// One entry per [`LineClass`], in the order of [`LineClass::ALL`].
     pub layers: Vec<Layer>,
+    /// Under the lines, in the order in which they are inked.
+    pub areas: Vec<Area>,
 }
 
 /// The lines of one class.
@@ -92,7 +95,7 @@ impl Drawing {
         for layer in &mut layers {
             layer.runs.retain(|_| !is_speck.next().unwrap_or(false));
         }
-        Self { page: camera.page(), layers: layers.into() }
+        Self { page: camera.page(), layers: layers.into(), areas: Vec::new() }
     }
 
     /// The layers and runs in the order in which they are inked: hidden lines first, then creases
@@ -108,6 +111,37 @@ impl Drawing {
                 (layer, visible, layer.runs.iter().filter(|r| r.visible == visible).collect())
             })
     }
+}
+
+/// How to ink areas that have it in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tint {
+    /// A word for scripts: the class of its area in an SVG.
+    pub name: String,
+    /// Of the area.
+    pub color: Color,
+    /// Pixels by which the area is drawn larger than it is, at least 0, to be seen where it is
+    /// narrow.
+    pub spread: f64,
+}
+
+#[cfg(any(feature = "svg", feature = "png"))]
+impl Tint {
+    /// Width of the stroke along the outlines: at least so much that no paper shines through between
+    /// two areas.
+    pub(crate) fn outline(&self) -> f64 {
+        2.0 * self.spread.max(0.25)
+    }
+}
+
+/// All that is visible of one tint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Area {
+    /// How to ink it.
+    pub tint: Tint,
+    /// Closed outlines in pixels from the upper left corner of the page, y down, in hundredths. Outer
+    /// ones and holes run in opposite directions, so that either fill rule gives the same.
+    pub rings: Vec<Vec<DVec2>>,
 }
 
 /// How to ink a [`Drawing`].

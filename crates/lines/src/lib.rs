@@ -43,7 +43,8 @@
 //!    pixel and finds the ends of its visible [`Run`]s by bisection. All in f64, with exact
 //!    predicates where the surface is near: a line never hides behind its own faces, and there is
 //!    no offset to choose.
-//! 5. [`to_svg`] and [`to_png`] ink the runs in a [`Style`].
+//! 5. Where faces are to be told apart, [`tinted_areas`] finds what of them is visible.
+//! 6. [`to_svg`] and [`to_png`] ink areas and runs in a [`Style`].
 //!
 //! The same input gives the same output, to the byte.
 //!
@@ -58,13 +59,15 @@
 //!
 //! All are on by default. Without `visibility` there is [`Drawing::through_glass`].
 //!
-//! - `visibility`: [`Occluders`], [`Drawing::new`] (crates `obvhs` and `robust`).
+//! - `visibility`: [`Occluders`], [`Drawing::new`], [`tinted_areas`] (crates `obvhs` and `robust`).
 //! - `svg`: [`to_svg`] (crate `svg`).
 //! - `png`: [`to_png`] (crate `tiny-skia`).
 //!
 //! [`EdgeFilter::Convex`]: drypoint_mesh::EdgeFilter::Convex
 //! [`EdgeFilter::All`]: drypoint_mesh::EdgeFilter::All
 
+#[cfg(feature = "visibility")]
+mod areas;
 mod camera;
 mod camera_error;
 mod chain;
@@ -77,17 +80,21 @@ mod occluders;
 mod page;
 #[cfg(feature = "png")]
 mod png;
+#[cfg(feature = "visibility")]
+mod rings;
 mod segments;
 mod specks;
 #[cfg(feature = "svg")]
 mod svg;
 mod trace;
 
+#[cfg(feature = "visibility")]
+pub use areas::tinted_areas;
 pub use camera::Camera;
 pub use camera_error::CameraError;
 pub use chain::{Chain, chain};
 pub use color::Color;
-pub use drawing::{Drawing, HiddenLines, Layer, Style};
+pub use drawing::{Area, Drawing, HiddenLines, Layer, Style, Tint};
 pub use filter::filter_for_drawing;
 #[cfg(feature = "visibility")]
 pub use occluders::Occluders;

@@ -170,6 +170,16 @@ impl Sightlines<'_> {
         true
     }
 
+    /// Whether anything hides a point within a face, off its border. The face itself, and those in
+    /// its plane, do not.
+    pub(crate) fn is_face_hidden(&mut self, point: DVec3) -> bool {
+        // No edge, so no triangle is at it.
+        self.ends = [u32::MAX; 2];
+        let eye = eye_from(point, self.viewpoint, self.occluders.diagonal);
+        let sideways = (eye - point).any_orthogonal_vector();
+        self.any_hit(&Sight { from: point, eye, shift: sideways }).is_some()
+    }
+
     /// A hit whatever the shift, if there is one, or else one for this shift.
     fn any_hit(&mut self, sight: &Sight) -> Option<Hit> {
         if let Some(last) = self.last_hit

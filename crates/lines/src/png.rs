@@ -1,8 +1,11 @@
 //! A drawing as PNG.
 
-use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
+use glam::DVec2;
+use tiny_skia::{
+    FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
+};
 
-use crate::{Color, Drawing, Run, Style};
+use crate::{Area, Color, Drawing, Style};
 
 /// Most pixels of a picture: 1 GiB of memory.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -20,6 +23,7 @@ pub fn to_png(drawing: &Drawing, style: &Style) -> Result<Vec<u8>, PngError> {
     }
     let mut pixmap = Pixmap::new(width, height).ok_or(too_large)?;
     pixmap.fill(painted(style.background.unwrap_or(Color::WHITE)));
+    drawing.areas.iter().for_each(|area| fill(&mut pixmap, area));
     let mut paint = Paint { anti_alias: true, ..Default::default() };
     paint.set_color(painted(style.color));
     for (_, visible, runs) in drawing.inked(style) {
@@ -34,7 +38,7 @@ pub fn to_png(drawing: &Drawing, style: &Style) -> Result<Vec<u8>, PngError> {
         };
         // One stroke for all, so that lines that are not opaque do not add up where they cross.
         let mut builder = PathBuilder::new();
-        runs.into_iter().for_each(|run| push(&mut builder, run));
+        runs.into_iter().for_each(|run| push(&mut builder, &run.points, run.closed));
         if let Some(path) = builder.finish() {
             pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
         }
@@ -42,12 +46,28 @@ pub fn to_png(drawing: &Drawing, style: &Style) -> Result<Vec<u8>, PngError> {
     pixmap.encode_png().map_err(|error| PngError::Encoding { reason: error.to_string() })
 }
 
-fn push(builder: &mut PathBuilder, run: &Run) {
-    for (i, point) in run.points.iter().enumerate() {
+/// Fills an area and outlines it in its own color.
+fn fill(pixmap: &mut Pixmap, area: &Area) {
+    let mut builder = PathBuilder::new();
+    area.rings.iter().for_each(|ring| push(&mut builder, ring, true));
+    let Some(path) = builder.finish() else { return };
+    let mut paint = Paint { anti_alias: true, ..Default::default() };
+    paint.set_color(painted(area.tint.color));
+    let stroke = Stroke {
+        width: narrow(area.tint.outline()),
+        line_join: LineJoin::Round,
+        ..Default::default()
+    };
+    pixmap.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+    pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
+}
+
+fn push(builder: &mut PathBuilder, points: &[DVec2], closed: bool) {
+    for (i, point) in points.iter().enumerate() {
         let (x, y) = (narrow(point.x), narrow(point.y));
         if i == 0 { builder.move_to(x, y) } else { builder.line_to(x, y) }
     }
-    if run.closed {
+    if closed {
         builder.close();
     }
 }

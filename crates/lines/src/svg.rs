@@ -6,7 +6,7 @@ use glam::DVec2;
 use svg::Document;
 use svg::node::element::{Group, Path, Rectangle, Title};
 
-use crate::{Color, Drawing, Layer, Run, Style};
+use crate::{Area, Color, Drawing, Layer, Run, Style};
 
 /// `drawing` as a text in SVG 1.1, for browsers, Inkscape and plotters, under a `title`.
 ///
@@ -14,6 +14,9 @@ use crate::{Color, Drawing, Layer, Run, Style};
 /// `hidden` beside it; a class without lines has no group. In it one `<path>` per run, with the
 /// edges it runs along in `data-edges`, by id. Pixels with two decimals; a run that is shorter is
 /// left out.
+///
+/// Areas lie under the lines in a `<g class="areas">`, one `<path>` each with the name of its tint
+/// as its class.
 pub fn to_svg(drawing: &Drawing, style: &Style, title: &str) -> String {
     let (width, height) = (drawing.page.width, drawing.page.height);
     let mut document = Document::new()
@@ -25,6 +28,10 @@ pub fn to_svg(drawing: &Drawing, style: &Style, title: &str) -> String {
         let page =
             Rectangle::new().set("class", "background").set("width", width).set("height", height);
         document = document.add(painted(page, "fill", color));
+    }
+    if !drawing.areas.is_empty() {
+        let group = Group::new().set("class", "areas").set("stroke-linejoin", "round");
+        document = document.add(drawing.areas.iter().map(area).fold(group, Group::add));
     }
     for (layer, visible, runs) in drawing.inked(style) {
         let paths: Vec<Path> = runs.into_iter().filter_map(path).collect();
@@ -67,6 +74,17 @@ where
     element
 }
 
+/// An area as a path, outlined in its own color.
+fn area(area: &Area) -> Path {
+    let rings = area.rings.iter().map(|ring| ring.iter().map(rounded).collect::<Vec<_>>());
+    let data: String = rings.map(|ring| data(&ring, true)).collect();
+    let path = Path::new()
+        .set("class", area.tint.name.as_str())
+        .set("stroke-width", Hundredths::of(area.tint.outline()).to_string())
+        .set("d", data);
+    painted(painted(path, "fill", area.tint.color), "stroke", area.tint.color)
+}
+
 /// A run as a path; none if all its points round to one.
 fn path(run: &Run) -> Option<Path> {
     let mut points: Vec<[Hundredths; 2]> = run.points.iter().map(rounded).collect();
@@ -77,6 +95,12 @@ fn path(run: &Run) -> Option<Path> {
     if points.len() < 2 {
         return None;
     }
+    let edges: Vec<String> = run.edges.iter().map(|edge| edge.0.to_string()).collect();
+    Some(Path::new().set("d", data(&points, run.closed)).set("data-edges", edges.join(" ")))
+}
+
+/// A polyline as path data.
+fn data(points: &[[Hundredths; 2]], closed: bool) -> String {
     let mut data = String::with_capacity(12 * points.len());
     for (i, [x, y]) in points.iter().enumerate() {
         let before = match i {
@@ -87,11 +111,10 @@ fn path(run: &Run) -> Option<Path> {
         // Writing to a string cannot fail.
         let _ = write!(data, "{before}{x} {y}");
     }
-    if run.closed {
+    if closed {
         data.push('Z');
     }
-    let edges: Vec<String> = run.edges.iter().map(|edge| edge.0.to_string()).collect();
-    Some(Path::new().set("d", data).set("data-edges", edges.join(" ")))
+    data
 }
 
 fn rounded(point: &DVec2) -> [Hundredths; 2] {

@@ -2,8 +2,8 @@
 #![cfg(all(feature = "visibility", feature = "svg", feature = "png"))]
 
 use drypoint_lines::{
-    Camera, Color, Drawing, HiddenLines, LineOptions, Occluders, Page, PngError, Run, Segments,
-    Style, VisibilityParams, to_png, to_svg,
+    Area, Camera, Color, Drawing, HiddenLines, LineOptions, Occluders, Page, PngError, Run,
+    Segments, Style, Tint, VisibilityParams, to_png, to_svg,
 };
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, contour_edges, io, shapes};
 use glam::{DVec2, DVec3, Vec3};
@@ -123,7 +123,10 @@ fn a_picture_of_nothing_is_a_picture() {
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("<g"));
     let page = Page { width: 65_535, height: 65_535, margin: 0.0 };
     let too_large = PngError::TooLarge { width: 65_535, height: 65_535 };
-    assert_eq!(to_png(&Drawing { page, layers: vec![] }, &Style::default()), Err(too_large));
+    assert_eq!(
+        to_png(&Drawing { page, layers: vec![], areas: vec![] }, &Style::default()),
+        Err(too_large)
+    );
 }
 
 #[test]
@@ -222,4 +225,24 @@ fn outlines_of_models_do_not_leak() {
             assert!(share < 0.01, "{name} from {towards_viewer}: {share} flooded");
         }
     }
+}
+
+#[test]
+fn areas_lie_under_the_lines() {
+    let tint = Tint { name: "land".into(), color: Color::opaque(0, 200, 0), spread: 1.0 };
+    let ring = [[20.0, 20.0], [60.0, 20.0], [60.0, 60.0], [20.0, 60.0]];
+    let hole = [[30.0, 30.0], [30.0, 50.0], [50.0, 50.0], [50.0, 30.0]];
+    let rings = [ring, hole].map(|ring| ring.map(DVec2::from_array).to_vec()).to_vec();
+    let drawing = Drawing { areas: vec![Area { tint, rings }], ..two_triangles() };
+    let svg = to_svg(&drawing, &Style::default(), "");
+    let expected = r##"<g class="areas" stroke-linejoin="round">
+<path class="land" d="M20 20L60 20 60 60 20 60ZM30 30L30 50 50 50 50 30Z" fill="#00c800" stroke="#00c800" stroke-width="2"/>
+</g>
+<g class="boundary""##;
+    assert!(svg.contains(expected), "{svg}");
+    let png = Pixmap::decode_png(&to_png(&drawing, &Style::default()).unwrap()).unwrap();
+    let at = |x, y| png.pixel(x, y).map(|p| [p.red(), p.green(), p.blue()]).unwrap();
+    let (land, paper, ink) = ([0, 200, 0], [255; 3], [0; 3]);
+    assert_eq!([at(25, 25), at(30, 40), at(40, 40), at(70, 40)], [land, land, paper, paper]);
+    assert_eq!(at(49, 50), ink, "a line over the area");
 }

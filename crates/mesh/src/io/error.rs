@@ -208,6 +208,16 @@ pub enum Fault {
         /// How many there are.
         available: u64,
     },
+    /// Neither of the two ways to write an STL file.
+    #[error(
+        "is neither STL text, which begins with \"solid\", nor a whole binary STL, which would have {needed} bytes, not {available}"
+    )]
+    NotStl {
+        /// How many the count in its header asks for, or the header itself.
+        needed: u64,
+        /// How many there are.
+        available: u64,
+    },
     /// A reference to a glTF object that is not there.
     #[error("uses {kind}[{index}], but there are only {count}")]
     NoSuchObject {

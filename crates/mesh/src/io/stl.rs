@@ -53,14 +53,14 @@ impl Solids {
 
     fn read_binary(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
         let available = bytes.len() as u64;
-        let too_short = |needed| Fault::TooShort { needed, available }.at(Place::Byte(0));
+        let not_stl = |needed| Fault::NotStl { needed, available }.at(Place::Byte(0));
         let Some((header, facets)) = bytes.split_first_chunk::<HEADER>() else {
-            return Err(too_short(HEADER as u64));
+            return Err(not_stl(HEADER as u64));
         };
         let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
         let needed = HEADER as u64 + FACET as u64 * u64::from(count);
         if available < needed {
-            return Err(too_short(needed));
+            return Err(not_stl(needed));
         }
         self.positions.reserve(3 * count as usize);
         for (row, facet) in facets.chunks_exact(FACET).take(count as usize).enumerate() {

@@ -203,10 +203,17 @@ fn bad_binary_ply_rows_are_named() {
 fn bad_stl_files_are_refused() {
     let check = |bytes: &[u8], message: &str| check(Format::Stl, bytes, message);
     let mut bytes = binary_stl(b"solid", &[[0.0; 3]; 6]);
-    check(&bytes[..83], "byte 0: needs 84 bytes, but there are only 83");
-    check(&bytes[..183], "byte 0: needs 184 bytes, but there are only 183");
+    let wanted = |needed: u64, available: u64| {
+        format!(
+            "byte 0: is neither STL text, which begins with \"solid\", nor a whole binary STL, which \
+             would have {needed} bytes, not {available}"
+        )
+    };
+    check(&bytes[..83], &wanted(84, 83));
+    check(&bytes[..183], &wanted(184, 183));
+    check(b"\x93\x00 garbage", &wanted(84, 10));
     bytes[83] = 255;
-    check(&bytes, "byte 0: needs 213909504184 bytes, but there are only 184");
+    check(&bytes, &wanted(213_909_504_184, 184));
     check(&binary_stl(b"", &[]), "has no faces");
     let mut corners = [[0.0; 3]; 6];
     corners[4][2] = f32::NEG_INFINITY;

@@ -1,0 +1,54 @@
+//! What the program says about itself and about a mesh.
+
+use crate::bench::{Bench, CORNER};
+
+#[test]
+fn help_has_examples() {
+    let bench = Bench::new();
+    for args in ["--help", "draw --help", "patches --help", "extract --help"] {
+        assert!(bench.succeed(args).contains("Examples:"), "{args}");
+    }
+    for (command, words) in [
+        ("", &["torus-knot", "cad-part", "huge-sphere"][..]),
+        ("patches", &["fast", "default", "best", "paper", "far", "near", "tight", "mesh-shader"]),
+        ("patches", &["--levels", "--partition", "super_patches", "peak_memory"]),
+        ("draw", &["--show", "survivors", "--model", "--preset"]),
+        ("extract", &["super_patches_tested", "--runtime", ".patches"]),
+    ] {
+        let help = bench.succeed(&format!("{command} --help"));
+        for word in words {
+            assert!(help.contains(word), "{command} --help: no {word}");
+        }
+    }
+    assert!(bench.succeed("info --help").contains("MODEL"));
+    assert!(bench.succeed("--version").starts_with("drypoint "));
+}
+
+#[test]
+fn info_counts() {
+    let bench = Bench::new();
+    bench.write("corner.obj", CORNER);
+    let report = bench.json("info corner.obj --json --vertices");
+    for (key, count) in [
+        ("faces", 4),
+        ("vertices", 4),
+        ("welded_vertices", 4),
+        ("interior", 6),
+        ("boundary", 0),
+        ("non_manifold", 0),
+        ("inconsistent", 0),
+        ("degenerate", 0),
+        ("convex", 6),
+        ("flat", 0),
+        ("concave", 0),
+    ] {
+        assert_eq!(report[key], count, "{key}");
+    }
+    assert_eq!(
+        report["bounds"],
+        serde_json::json!({"min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0]})
+    );
+    assert_eq!(report["positions"][3], serde_json::json!([0.0, 0.0, 1.0]));
+    assert_eq!(report["parts"].as_array().unwrap().len(), 1);
+    assert!(bench.succeed("info corner.obj").contains("convex"));
+}
