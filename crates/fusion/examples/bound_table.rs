@@ -11,6 +11,10 @@
 //! are of one thread, the least of five, normals included.
 #![allow(clippy::print_stdout, reason = "the table is what this program is for")]
 
+#[path = "support/mean.rs"]
+mod mean;
+#[path = "support/near.rs"]
+mod near;
 mod support;
 
 use std::ops::ControlFlow;
@@ -18,18 +22,11 @@ use std::time::Instant;
 
 use drypoint_bounds::{DoubleCone, NormalCone, Plane, SpatializedNormalCone, Sphere};
 use drypoint_fusion::{FusionParams, Patch, PatchSet, fuse};
-use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint, io};
+use drypoint_mesh::{EdgeFilter, MeshAdjacency, io};
 use glam::DVec3;
-use support::{far_viewpoints, mean_view};
-
-/// Faces over and under which near viewpoints are.
-const FACES: usize = 100;
-
-/// How far along their normals.
-const OFFSETS: [f64; 7] = [0.0, 0.01, -0.01, 0.1, -0.1, 0.5, -0.5];
-
-/// Near viewpoints anywhere in the box.
-const IN_THE_BOX: u32 = 300;
+use mean::mean_view;
+use near::near_viewpoints;
+use support::far_viewpoints;
 
 const USAGE: &str =
     "usage: bound_table MESH [fast|default|best|paper|paper-mean [MOST_EDGES_IN_A_PART]]";
@@ -155,22 +152,4 @@ fn shapes(set: &PatchSet, patch: &Patch) -> Vec<Shape> {
     wings
         .map(|w| ([normal(w.left_face()), normal(w.right_face())], w.ends().map(position)))
         .collect()
-}
-
-/// On, in and beside the surface.
-fn near_viewpoints(mesh: &Mesh) -> Vec<Viewpoint> {
-    let faces = mesh.triangles();
-    let over = |i: usize| {
-        let face = faces[(2 * i + 1) * faces.len() / (2 * FACES)];
-        let [a, b, c] = face.map(|vertex| mesh.position(vertex).as_dvec3());
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        OFFSETS.map(|offset| (a + b + c) / 3.0 + offset * normal)
-    };
-    // Evenly spread: multiples of the plastic number's powers (Roberts, 2018), in a box of side 2.
-    let inside = |i: u32| {
-        let share = (f64::from(i) * DVec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5)).fract();
-        let half = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.max.as_dvec3());
-        half * (2.0 * share - 1.0)
-    };
-    (0..FACES).flat_map(over).chain((1..=IN_THE_BOX).map(inside)).map(Viewpoint::at).collect()
 }

@@ -9,6 +9,8 @@
 //! at distances 5, 10, 25, 50, 75 and 100.
 #![allow(clippy::print_stdout, reason = "the table is what this program is for")]
 
+#[path = "support/mean.rs"]
+mod mean;
 mod support;
 
 use std::ops::ControlFlow;
@@ -16,7 +18,8 @@ use std::time::Instant;
 
 use drypoint_fusion::{FusionParams, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, io};
-use support::{MeanView, far_viewpoints, mean_view};
+use mean::{MeanView, mean_view};
+use support::far_viewpoints;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);

@@ -6,21 +6,26 @@ use drypoint_bounds::DoubleCone;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency};
 use rayon::prelude::*;
 
+use crate::arrange::{Bounded, Group, arrange};
 use crate::bound::bound;
 use crate::geometry::Frame;
 use crate::greedy::{GreedyModel, Settings};
 use crate::grow::{Grown, Published, grow_greedily};
+use crate::limits::keep_limits;
+use crate::planes::{Effort, group, grow_in_planes};
 use crate::progress::Counter;
 use crate::{
-    Cancelled, FusionParams, Method, Patch, PatchSet, Progress, Provenance, SphereKind, mesh_hash,
+    Cancelled, CostModel, FusionParams, Levels, Method, PatchSet, Progress, Provenance, mesh_hash,
 };
 
-/// Groups the edges of `mesh` that `filter` keeps into patches (Tsiapkolis and Bénard, CGF 2024,
-/// Algorithm 1).
+/// Share of the patches that are tested where there are two levels, as leaves are grown for it:
+/// super-patches survive about that often, on the bunny and the dragon.
+const TESTED_OF_TWO_LEVELS: f64 = 0.3;
+
+/// Groups the edges of `mesh` that `filter` keeps into patches that make a view cheap.
 ///
-/// On all threads of the current rayon pool; the result is the same for any number of them. With
-/// [`FusionParams::PAPER`], some 80 µs of processor time for each edge; it grows with
-/// `max_partition`.
+/// On all threads of the current rayon pool; the result is the same for any number of them. The
+/// presets of [`FusionParams`] say how long it takes.
 ///
 /// `progress` is called every few milliseconds from any of the threads, so that two calls may come
 /// out of order; with [`ControlFlow::Break`] it ends the fusion within milliseconds.
@@ -38,25 +43,21 @@ pub fn fuse(
     let counter = Counter::new(kept.len(), progress);
     counter.count(0)?;
     let frame = Frame::new(mesh, adjacency);
-    let mut grown = match &frame {
-        Some(frame) => grow(frame, kept, params, &counter)?,
+    let (closed, groups, mut always_tested) = match &frame {
+        Some(frame) => {
+            let Grown { patches, always_tested } = grow(frame, kept, params, &counter)?;
+            let patches = keep_limits(frame, patches, &params.cost);
+            let (closed, mut open) = bound_each(frame, patches, params, &counter)?;
+            open.extend(always_tested);
+            let groups = match params.levels {
+                Levels::One => Vec::new(),
+                Levels::Two => bounded_groups(frame, &closed, params),
+            };
+            (closed, groups, open)
+        }
         // All vertices are at one point, and no face has an area.
-        None => Grown { always_tested: kept, ..Grown::default() },
+        None => (Vec::new(), Vec::new(), kept),
     };
-    let bounded: Vec<(DoubleCone, Vec<EdgeId>)> = std::mem::take(&mut grown.patches)
-        .into_par_iter()
-        .map(|edges| {
-            counter.check()?;
-            let bound =
-                frame.as_ref().map_or(DoubleCone::ALWAYS, |f| bound(f, &edges, params.bound));
-            Ok((bound, edges))
-        })
-        .collect::<Result<_, _>>()?;
-    // What is never culled is no patch: its test would be wasted.
-    let (open, closed): (Vec<_>, Vec<_>) =
-        bounded.into_iter().partition(|(bound, _)| *bound == DoubleCone::ALWAYS);
-    let mut always_tested = grown.always_tested;
-    always_tested.extend(open.into_iter().flat_map(|(_, edges)| edges));
     always_tested.sort_unstable();
 
     let provenance = Provenance {
@@ -65,7 +66,7 @@ pub fn fuse(
         mesh_hash: mesh_hash(mesh),
         unit: frame.map_or(0.0, |frame| frame.unit),
     };
-    let set = arrange(mesh, adjacency, &closed, &always_tested, provenance);
+    let set = arrange((mesh, adjacency), closed, &groups, &always_tested, provenance);
     debug_assert_eq!(set.validate(), Ok(()));
     counter.finish()?;
     Ok(set)
@@ -81,53 +82,68 @@ fn grow(
     let (fusible, mut without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
         edges.into_par_iter().partition(|&edge| frame.shape(edge).is_some());
     counter.count(2 * without_shape.len())?;
-    let published = |sphere, cache_size: u32, max_partition| {
-        let model = GreedyModel {
-            patch_test: params.cost.patch_test,
-            view_distance: params.views.mean_distance(),
-        };
-        let settings = Settings { model, cache_size: cache_size.max(1) as usize };
-        Published { sphere, settings, max_partition }
+    let cost = match params.levels {
+        Levels::One => params.cost,
+        Levels::Two => {
+            let patch_test = TESTED_OF_TWO_LEVELS * params.cost.patch_test;
+            CostModel { patch_test, ..params.cost }
+        }
     };
     let mut grown = match params.method {
         Method::Greedy { sphere, cache_size, max_partition } => {
-            let method = published(sphere, cache_size, max_partition);
+            let view_distance = params.views.mean_distance();
+            let model = GreedyModel { patch_test: cost.patch_test, view_distance };
+            let settings = Settings { model, cache_size: cache_size.max(1) as usize };
+            let method = Published { sphere, settings, max_partition };
             grow_greedily(frame, &fusible, method, counter)?
         }
         Method::Planes { .. } => {
-            let method = published(SphereKind::Reduced, 50, Some(512));
-            grow_greedily(frame, &fusible, method, counter)?
+            let effort = effort(params.method);
+            grow_in_planes(frame, &fusible, (cost, &params.views), effort, counter)?
         }
     };
     grown.always_tested.append(&mut without_shape);
     Ok(grown)
 }
 
-/// Puts edges in the order of their patches, and those that are always tested behind them.
-fn arrange(
-    mesh: &Mesh,
-    adjacency: &MeshAdjacency,
-    patches: &[(DoubleCone, Vec<EdgeId>)],
-    always_tested: &[EdgeId],
-    provenance: Provenance,
-) -> PatchSet {
-    let in_patches = patches.iter().flat_map(|(_, edges)| edges);
-    let edge_ids: Vec<EdgeId> = in_patches.chain(always_tested).copied().collect();
-    let mut first_edge = 0;
-    let place = |(bound, edges): &(DoubleCone, Vec<EdgeId>)| {
-        #[expect(clippy::cast_possible_truncation, reason = "an edge has a u32 as its id")]
-        let edge_count = edges.len() as u32;
-        let patch = Patch { bound: *bound, first_edge, edge_count };
-        first_edge += edge_count;
-        patch
+/// How hard to search in the space of planes: as the default where the method says nothing of it.
+fn effort(method: Method) -> Effort {
+    let [cell, looks, sweeps, tears] = match method {
+        Method::Planes { cell, looks, sweeps, tears } => [cell.max(8), looks.max(1), sweeps, tears],
+        Method::Greedy { .. } => [256, 2, 0, 0],
     };
-    PatchSet {
-        super_patches: Vec::new(),
-        patches: patches.iter().map(place).collect(),
-        wings: edge_ids.iter().map(|&edge| adjacency.wing(edge)).collect(),
-        classes: edge_ids.iter().map(|&edge| adjacency.class(edge)).collect(),
-        edge_ids,
-        positions: mesh.positions().to_vec(),
-        provenance,
-    }
+    let [cell, looks, sweeps, tears] = [cell, looks, sweeps, tears].map(|number| number as usize);
+    Effort { cell, looks, sweeps, tears }
+}
+
+/// Patches with their bounds; and the edges of those that are never culled, which are no patches:
+/// their tests would be wasted.
+fn bound_each(
+    frame: &Frame,
+    patches: Vec<Vec<EdgeId>>,
+    params: &FusionParams,
+    counter: &Counter,
+) -> Result<(Vec<Bounded>, Vec<EdgeId>), Cancelled> {
+    let bounded: Vec<Bounded> = patches
+        .into_par_iter()
+        .map(|edges| {
+            counter.check()?;
+            Ok(Bounded { bound: bound(frame, &edges, params.bound), edges })
+        })
+        .collect::<Result<_, _>>()?;
+    let (open, closed): (Vec<_>, Vec<_>) =
+        bounded.into_iter().partition(|patch| patch.bound == DoubleCone::ALWAYS);
+    Ok((closed, open.into_iter().flat_map(|patch| patch.edges).collect()))
+}
+
+/// Super-patches with their bounds, but for those that are never culled.
+fn bounded_groups(frame: &Frame, patches: &[Bounded], params: &FusionParams) -> Vec<Group> {
+    let lists: Vec<&[EdgeId]> = patches.iter().map(|patch| &patch.edges[..]).collect();
+    let groups = group(frame, &lists, &params.views, effort(params.method));
+    let bounded = groups.into_par_iter().map(|numbers| {
+        let edges: Vec<EdgeId> =
+            numbers.iter().flat_map(|&number| lists[number as usize]).copied().collect();
+        Group { bound: bound(frame, &edges, params.bound), patches: numbers }
+    });
+    bounded.filter(|group| group.bound != DoubleCone::ALWAYS).collect()
 }

@@ -1,6 +1,6 @@
 //! Edges as fusion sees them: in f64, in a frame where half the longest side of the mesh is 1.
 
-use drypoint_mesh::{EdgeId, Mesh, MeshAdjacency, Wing};
+use drypoint_mesh::{EdgeId, HalfEdge, Mesh, MeshAdjacency, Wing};
 use glam::DVec3;
 
 /// Sine of the smallest corner angle of a face whose normal is trusted. Differences of f32 lose at
@@ -48,6 +48,11 @@ impl<'a> Frame<'a> {
         0.5 * (self.position(a) + self.position(b))
     }
 
+    /// Vertices at its ends, lower first; equal numbers are equal places.
+    pub(crate) fn ends(&self, edge: EdgeId) -> [u32; 2] {
+        self.adjacency.wing(edge).ends()
+    }
+
     /// `None` if a face of the edge spans no plane that can be trusted, or is missing.
     pub(crate) fn shape(&self, edge: EdgeId) -> Option<EdgeShape> {
         let wing = self.adjacency.wing(edge);
@@ -59,6 +64,20 @@ impl<'a> Frame<'a> {
         let [tail, head] = vertices.map(|v| self.mesh.position(v).as_dvec3());
         let direction = (head - tail).try_normalize()?;
         Some(EdgeShape { normals, vertices, ends: vertices.map(|v| self.position(v)), direction })
+    }
+
+    /// Normal and offset of a triangle's plane; `None` if it spans none that can be trusted.
+    pub(crate) fn plane(&self, triangle: [u32; 3]) -> Option<(DVec3, f64)> {
+        let normal = self.unit_normal(triangle)?;
+        let middle: DVec3 = triangle.iter().map(|&vertex| self.position(vertex)).sum();
+        Some((normal, normal.dot(middle) / 3.0))
+    }
+
+    /// The triangles on the left and the right of an edge that is no boundary, and whether the wing
+    /// reads the right one turned over.
+    pub(crate) fn triangles(&self, edge: EdgeId) -> ([u32; 2], bool) {
+        let triangles = self.adjacency.sides(edge).map(HalfEdge::triangle);
+        (triangles, self.adjacency.is_right_turned(edge))
     }
 
     fn unit_normal(&self, face: [u32; 3]) -> Option<DVec3> {

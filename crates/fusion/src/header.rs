@@ -95,7 +95,7 @@ fn method_words(method: Method) -> [u32; 5] {
             let is_limited = u32::from(max_partition.is_some());
             [0, sphere as u32, cache_size, is_limited, max_partition.unwrap_or(0)]
         }
-        Method::Planes { cell, sweeps } => [1, cell, sweeps, 0, 0],
+        Method::Planes { cell, looks, sweeps, tears } => [1, cell, looks, sweeps, tears],
     }
 }
 
@@ -160,7 +160,7 @@ impl Fields<'_> {
                 };
                 Some(Method::Greedy { sphere, cache_size: b, max_partition })
             }
-            1 => Some(Method::Planes { cell: a, sweeps: b }),
+            1 => Some(Method::Planes { cell: a, looks: b, sweeps: c, tears: d }),
             _ => None,
         }
     }

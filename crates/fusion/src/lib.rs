@@ -19,7 +19,7 @@
 //!
 //! let mesh = shapes::icosphere(2_000);
 //! let adjacency = MeshAdjacency::new(&mesh);
-//! let params = FusionParams::PAPER;
+//! let params = FusionParams::DEFAULT;
 //! let go_on = |_| ControlFlow::Continue(());
 //! let set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)?;
 //!
@@ -34,6 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod arrange;
 mod bound;
 mod cluster;
 mod columns;
@@ -47,9 +48,11 @@ mod greedy;
 mod grow;
 mod header;
 mod lanes;
+mod limits;
 mod params;
 mod partition;
 mod patch_set;
+mod planes;
 mod progress;
 mod screen;
 mod validate;

@@ -1,0 +1,55 @@
+//! Patches of patches.
+
+use super::cluster::Cluster;
+use super::model::Model;
+use super::table::Table;
+use super::{CUTS, Effort, STALLED, fuse_cell, in_parts};
+use crate::geometry::Frame;
+use crate::{CostModel, ViewProfile};
+use drypoint_mesh::EdgeId;
+use rayon::prelude::*;
+
+/// Groups patches by the expected cost of testing them, as edges are grouped: a group costs one
+/// patch test, and one for each of its patches where it survives. Lists of patches; those that are
+/// in none are better tested from everywhere.
+///
+/// Patches are not moved from group to group once they are in one.
+pub(crate) fn group(
+    frame: &Frame,
+    patches: &[&[EdgeId]],
+    views: &ViewProfile,
+    effort: Effort,
+) -> Vec<Vec<u32>> {
+    // In patch tests.
+    let cost = CostModel { patch_test: 1.0, ..CostModel::PAPER };
+    let model = Model::new(cost, views);
+    let edges: Vec<EdgeId> = patches.concat();
+    let table = Table::new(frame, &edges);
+    let mut first = 0;
+    let ranges: Vec<(u32, std::ops::Range<u32>)> = (0..)
+        .zip(patches)
+        .map(|(number, patch)| {
+            #[expect(clippy::cast_possible_truncation, reason = "edges are numbered by u32")]
+            let end = first + patch.len() as u32;
+            (number, std::mem::replace(&mut first, end)..end)
+        })
+        .collect();
+    let mut groups: Vec<Cluster> = ranges
+        .into_par_iter()
+        .map(|(number, items)| Cluster::of_patch(&table, number, items, &model))
+        .collect();
+    for round in 0.. {
+        let before = groups.len() as f64;
+        groups = in_parts(groups, &model, effort.cell, CUTS[round % CUTS.len()])
+            .into_par_iter()
+            .flat_map_iter(|part| fuse_cell(&table, &model, part, effort.looks))
+            .collect();
+        if groups.len() as f64 >= STALLED * before {
+            break;
+        }
+    }
+    groups.retain(|group| group.bound.cost < group.edges());
+    let mut lists: Vec<Vec<u32>> = groups.into_iter().map(|group| group.items.to_vec()).collect();
+    lists.iter_mut().for_each(|list| list.sort_unstable());
+    lists
+}

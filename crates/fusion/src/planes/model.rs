@@ -1,0 +1,76 @@
+//! The cost model and the view profile, as the search evaluates them.
+
+use glam::Vec3;
+use wide::f32x4;
+
+use crate::{CostModel, ViewProfile};
+
+/// What the search minimises. Distances in units of half the longest side of the mesh's box.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    pub(crate) cost: CostModel,
+    /// Reciprocals of the distances that count, and how much they do.
+    views: Vec<(f32, f32)>,
+    /// Reciprocal of the one distance that comes nearest.
+    pub(crate) nearness: f32,
+    patch_test: f32,
+    accepted_patch: f32,
+    block: f32,
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the search is content with f32")]
+impl Model {
+    pub(crate) fn new(cost: CostModel, views: &ViewProfile) -> Self {
+        let each = views.distances.iter().zip(&views.weights);
+        let counting = each.filter(|&(_, &weight)| weight > 0.0);
+        Self {
+            cost,
+            views: counting.map(|(d, w)| ((1.0 / d) as f32, *w as f32)).collect(),
+            nearness: (1.0 / views.mean_distance()) as f32,
+            patch_test: cost.patch_test as f32,
+            accepted_patch: cost.accepted_patch as f32,
+            block: cost.block.max(1) as f32,
+        }
+    }
+
+    /// Cost of a survivor beside that of its test: t_A + b ⌈edges / b⌉.
+    pub(crate) fn survivor(&self, edges: f32) -> f32 {
+        self.accepted_patch + self.block * (edges / self.block).ceil()
+    }
+
+    /// Probability H that planes survive which a cap and a distance t between center and apex bound.
+    pub(crate) fn acceptance(&self, chord_squared: f32, apex_distance: f32) -> f32 {
+        let cos = 1.0 - 0.5 * chord_squared;
+        let sin = (chord_squared * (1.0 - 0.25 * chord_squared)).max(0.0).sqrt();
+        let at = |&(nearness, weight): &(f32, f32)| {
+            let sin_beta = apex_distance * cos * nearness;
+            if sin_beta < cos {
+                weight * (sin * (1.0 - sin_beta * sin_beta).sqrt() + cos * sin_beta)
+            } else {
+                weight
+            }
+        };
+        self.views.iter().map(at).sum()
+    }
+
+    pub(crate) fn patch(&self, acceptance: f32, edges: f32) -> f32 {
+        self.patch_test + acceptance * self.survivor(edges)
+    }
+
+    /// Roughly the same from α + t / d and numbers of edges, several at once.
+    #[inline(always)]
+    pub(crate) fn rough_patch(&self, angle: f32x4, edges: f32x4) -> f32x4 {
+        let angle = angle.fast_min(f32x4::splat(1.5));
+        let acceptance = angle - angle * angle * angle * f32x4::splat(0.155);
+        let blocks = (edges / f32x4::splat(self.block) + f32x4::splat(0.499)).round();
+        let survivor = f32x4::splat(self.accepted_patch) + f32x4::splat(self.block) * blocks;
+        f32x4::splat(self.patch_test) + acceptance * survivor
+    }
+
+    /// Where a set of planes lies, so that those that are cheap to cull together lie together:
+    /// normals are as far apart as their angle, parallel planes as far as the angle under which
+    /// their distance is seen.
+    pub(crate) fn place(&self, axis: Vec3, center: Vec3) -> [f32; 4] {
+        [axis.x, axis.y, axis.z, self.nearness * axis.dot(center)]
+    }
+}

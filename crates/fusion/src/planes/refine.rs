@@ -1,0 +1,118 @@
+//! Edges that move to where they cost less, and clusters that are given up.
+
+use super::cell::{Cell, LEAST_GAIN};
+use super::cluster::Cluster;
+use super::outlines::Outline;
+
+/// How far a rough gain may be from a true one, as a share of what a move releases.
+const ROUGHNESS: f32 = 0.5;
+
+impl Cell<'_> {
+    /// Moves edges, gives up clusters and fuses what is left, where that gains.
+    pub(crate) fn refine(&mut self, looks: usize) {
+        self.move_edges(looks);
+        self.dissolve();
+        self.fuse_best(1, looks);
+    }
+
+    /// Moves edges, alone or with those that share a plane on the rim, to the cluster of this cell
+    /// where they cost less, if any.
+    pub(crate) fn move_edges(&mut self, looks: usize) {
+        for number in 0..self.clusters.len() {
+            let Some(cluster) = &self.clusters[number] else { continue };
+            for (unit, may_shrink) in cluster.units(self.table) {
+                self.move_unit(number, &unit, may_shrink, looks);
+            }
+        }
+    }
+
+    /// Moves some edges out of a cluster, if that gains anything.
+    fn move_unit(&mut self, from: usize, unit: &[u32], may_shrink: bool, looks: usize) {
+        let (table, model) = (self.table, self.model);
+        let Some(cluster) = &self.clusters[from] else { return };
+        // Edges may have gone with an earlier unit.
+        let is_here = unit.iter().all(|item| cluster.items.contains(item));
+        if cluster.items.len() <= unit.len() || !is_here {
+            return;
+        }
+        let moved = match unit {
+            [item] => Cluster::of_item(table, *item, model),
+            _ => Cluster::of_items(table, unit.into(), model),
+        };
+        let rest = may_shrink.then(|| cluster.without(table, &moved, model));
+        let left_cost = rest.as_ref().map_or_else(
+            || model.patch(cluster.bound.acceptance, cluster.edges() - moved.edges()),
+            |rest| rest.bound.cost,
+        );
+        let release = cluster.bound.cost - left_cost;
+        self.outlines.gains(&Outline::of(&moved, model), model, &mut self.gains);
+        self.gains.set(from, f32::NEG_INFINITY);
+        let (mut best_gain, mut best) = (LEAST_GAIN, None);
+        for _ in 0..looks {
+            let Some((to, rough)) = self.gains.most() else { break };
+            let rough = rough - moved.bound.cost + release;
+            if rough < best_gain - ROUGHNESS * release {
+                break;
+            }
+            self.gains.set(to, f32::NEG_INFINITY);
+            let Some(target) = &self.clusters[to] else { continue };
+            let bound = target.union(&moved, table, model, target.bound.cost + release - best_gain);
+            let gain = release - (bound.cost - target.bound.cost);
+            if gain > best_gain {
+                best_gain = gain;
+                best = Some((to, bound));
+            }
+        }
+        let Some((to, bound)) = best else { return };
+        let rest = rest.unwrap_or_else(|| cluster.without(table, &moved, model));
+        if let Some(target) = self.clusters[to].take() {
+            self.replace(to, Cluster::fused(table, target, moved, bound));
+        }
+        self.replace(from, rest);
+    }
+
+    /// Gives up clusters whose edges cost less in others.
+    fn dissolve(&mut self) {
+        for number in 0..self.clusters.len() {
+            self.dissolve_one(number);
+        }
+    }
+
+    fn dissolve_one(&mut self, number: usize) {
+        let (table, model) = (self.table, self.model);
+        let Some(cluster) = self.clusters[number].take() else { return };
+        self.outlines.remove(number);
+        // What its edges may still cost elsewhere.
+        let mut left = cluster.bound.cost - LEAST_GAIN;
+        // Old clusters, to put back if it comes to nothing.
+        let mut changed: Vec<(usize, Cluster)> = Vec::new();
+        for &item in &cluster.items {
+            let moved = Cluster::of_item(table, item, model);
+            self.outlines.gains(&Outline::of(&moved, model), model, &mut self.gains);
+            let best =
+                self.gains.most().and_then(|(to, _)| Some((to, self.clusters[to].as_ref()?)));
+            let Some((to, target)) = best else {
+                left = f32::NEG_INFINITY;
+                break;
+            };
+            let bound = target.union(&moved, table, model, target.bound.cost + left);
+            left -= bound.cost - target.bound.cost;
+            if left <= 0.0 {
+                break;
+            }
+            if let Some(target) = self.clusters[to].take() {
+                if changed.iter().all(|(number, _)| *number != to) {
+                    changed.push((to, target.clone()));
+                }
+                self.replace(to, Cluster::fused(table, target, moved, bound));
+            }
+        }
+        if left > 0.0 {
+            return;
+        }
+        for (to, target) in changed {
+            self.replace(to, target);
+        }
+        self.replace(number, cluster);
+    }
+}
