@@ -135,7 +135,7 @@ fn presets_keep_their_order() {
         .map(|params| cost(&params));
         // Where little is to be gained, luck decides the last percent.
         let is_in_order = costs.windows(2).all(|pair| pair[0] < 1.01 * pair[1]);
-        assert!(is_in_order && costs[0] < 0.9 * costs[4], "{name}: {costs:?}");
+        assert!(is_in_order && costs[0] < 0.95 * costs[4], "{name}: {costs:?}");
     }
 }
 
