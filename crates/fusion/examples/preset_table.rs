@@ -4,7 +4,7 @@
 //! cargo run --release -p drypoint-fusion --example preset_table -- bunny.obj fast default two-levels paper
 //! ```
 //!
-//! The mesh is scaled to \[−1, 1\]. Viewpoints are the 42 vertices of an icosahedron subdivided once,
+//! `shape:NAME:TRIANGLES` in place of a file is a built-in shape. The mesh is scaled to \[−1, 1\]. Viewpoints are the 42 vertices of an icosahedron subdivided once,
 //! at distances 5, 10, 25, 50, 75 and 100; the near ones are on, in and beside the surface. A view
 //! costs 1.363 for each test of a patch or a super-patch, and 1 for each edge that is tested.
 //! `RAYON_NUM_THREADS` says how many threads build.
@@ -18,17 +18,17 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use drypoint_fusion::{FusionParams, Levels, PatchSet, ViewProfile, fuse};
-use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, io};
+use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint, io, shapes};
 use near::near_viewpoints;
 use support::far_viewpoints;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let path = args.next().ok_or("usage: preset_table MESH [PRESET]...")?;
-    let mesh = io::read(path.as_ref())?.mesh.normalized();
+    let mesh = mesh(&path)?.normalized();
     let adjacency = MeshAdjacency::new(&mesh);
     println!(
-        "preset          groups  patches  always  patches tested    tested      cost  near tested  seconds"
+        "preset           edges  groups  patches  always  patches tested    tested      cost  near tested  seconds"
     );
     let viewpoints = [far_viewpoints(), near_viewpoints(&mesh)];
     for name in args {
@@ -39,7 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let seconds = start.elapsed().as_secs_f64();
         let [(patches, edges), (_, near_edges)] = [0, 1].map(|i| mean_tests(&set, &viewpoints[i]));
         println!(
-            "{name:<14}{:>8}{:>9}{:>8}{patches:>16.1}{edges:>10.1}{:>10.1}{near_edges:>13.1}{seconds:>9.3}",
+            "{name:<14}{:>9}{:>7}{:>9}{:>8}{patches:>16.1}{edges:>10.1}{:>10.1}{near_edges:>13.1}{seconds:>9.3}",
+            set.wings().len(),
             set.super_patches().len(),
             set.patches().len(),
             set.always_tested().len(),
@@ -47,6 +48,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     Ok(())
+}
+
+fn mesh(path: &str) -> Result<Mesh, Box<dyn std::error::Error>> {
+    let Some(shape) = path.strip_prefix("shape:") else {
+        return Ok(io::read(path.as_ref())?.mesh);
+    };
+    let (name, triangles) = shape.split_once(':').ok_or("shape:NAME:TRIANGLES is wanted")?;
+    Ok(shapes::by_name(name, triangles.parse()?).ok_or("no such shape")?)
 }
 
 fn params(name: &str) -> Option<FusionParams> {

@@ -3,7 +3,7 @@
 use drypoint_mesh::{EdgeId, HalfEdge, Mesh, MeshAdjacency, Wing};
 use glam::DVec3;
 
-/// Sine of the smallest corner angle of a face whose normal is trusted. Differences of f32 lose at
+/// Sine of the smallest corner angle at which a face's normal is trusted. Differences of f32 lose at
 /// most 2⁻⁵³ of their size in f64, so above this the normal is off by some 1e-8 radians, well within
 /// what the bounds are grown by. Edges of thinner faces are always tested, those of faces without area
 /// among them.
@@ -68,7 +68,10 @@ impl<'a> Frame<'a> {
 
     /// Normal and offset of a triangle's plane; `None` if it spans none that can be trusted.
     pub(crate) fn plane(&self, triangle: [u32; 3]) -> Option<(DVec3, f64)> {
-        let normal = self.unit_normal(triangle)?;
+        let [a, b, c] = triangle;
+        // A sliver may be trusted at one corner and not at another, and edges look from each.
+        let turned = [[a, b, c], [b, c, a], [c, a, b]];
+        let normal = turned.into_iter().find_map(|corners| self.unit_normal(corners))?;
         let middle: DVec3 = triangle.iter().map(|&vertex| self.position(vertex)).sum();
         Some((normal, normal.dot(middle) / 3.0))
     }

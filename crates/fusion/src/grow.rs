@@ -13,7 +13,7 @@ use crate::{Cancelled, SphereKind};
 /// Edges that are worth culling together, and those that are not.
 #[derive(Debug, Default)]
 pub(crate) struct Grown {
-    /// Each in order of ids; patches of one part of space one after another, by their first edge.
+    /// Each in order of ids; patches of one part of space one after another.
     pub(crate) patches: Vec<Vec<EdgeId>>,
     /// In no order of use, but the same every time.
     pub(crate) always_tested: Vec<EdgeId>,

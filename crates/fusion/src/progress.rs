@@ -13,8 +13,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Share of the work done, 0 ..= 1. The first half of a part of space takes about as long as the
-    /// second.
+    /// Share of the work done, 0 ..= 1. Some of the work is estimated: it may stand still
+    /// before the end.
     pub fn fraction(&self) -> f64 {
         if self.edges == 0 { 1.0 } else { self.edges_done as f64 / self.edges as f64 }
     }
@@ -61,7 +61,12 @@ impl<'a> Counter<'a> {
 
     fn tell(&self, edges_done: usize) -> Result<(), Cancelled> {
         self.check()?;
-        if (self.on_progress)(Progress { edges_done, edges: self.edges }).is_break() {
+        if (self.on_progress)(Progress {
+            edges_done: edges_done.min(self.edges),
+            edges: self.edges,
+        })
+        .is_break()
+        {
             self.is_cancelled.store(true, Ordering::Relaxed);
         }
         self.check()

@@ -289,7 +289,16 @@ fn the_memory_of_partners_changes_nothing() {
 fn progress_comes_to_an_end() {
     let mesh = shapes::bumpy_sphere(3_000);
     let adjacency = MeshAdjacency::new(&mesh);
-    let params = FusionParams::PAPER.with_max_partition(Some(500));
+    let two_levels = FusionParams { levels: Levels::Two, ..FusionParams::BEST };
+    for params in
+        [FusionParams::PAPER.with_max_partition(Some(500)), FusionParams::FAST, two_levels]
+    {
+        check_progress(&mesh, &adjacency, &params);
+    }
+}
+
+#[track_caller]
+fn check_progress(mesh: &Mesh, adjacency: &MeshAdjacency, params: &FusionParams) {
     let (calls, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let edges = adjacency.edges(EdgeFilter::Convex).count();
     let on_progress = |progress: Progress| {
@@ -299,7 +308,7 @@ fn progress_comes_to_an_end() {
         assert!((0.0..=1.0).contains(&progress.fraction()));
         ControlFlow::Continue(())
     };
-    fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &on_progress).unwrap();
+    fuse(mesh, adjacency, EdgeFilter::Convex, params, &on_progress).unwrap();
     assert_eq!(most.into_inner(), edges);
     assert!(calls.into_inner() > 5);
 }

@@ -31,7 +31,7 @@ impl Cap {
 
     /// The smallest cap around this one's support and one more normal: of all caps held up by the
     /// new one and one or two others, the one whose axis is nearest to its farthest normal. `None`
-    /// if they lie on more than a hemisphere.
+    /// if no two or three of them have one axis.
     pub(crate) fn taking_in(&self, normal: Vec3) -> Option<Self> {
         let old = self.support();
         let mut smallest: Option<Self> = None;

@@ -2,44 +2,51 @@
 
 use std::ops::Range;
 
+/// A place, and whose it is: side by side, since cutting looks at them again and again.
+#[derive(Clone, Copy)]
+struct Placed {
+    place: [f32; 4],
+    number: u32,
+}
+
 /// Splits the numbers of `places` into cells of at most `most`, each as compact as can be: the
 /// longest side is cut, `share` of the way through its places in their order. The same places
 /// always give the same cells.
 pub(crate) fn split(places: &[[f32; 4]], most: usize, share: f64) -> (Vec<u32>, Vec<Range<usize>>) {
-    #[expect(clippy::cast_possible_truncation, reason = "edges are numbered by u32")]
-    let mut order: Vec<u32> = (0..places.len() as u32).collect();
-    let cells = cut(places, &mut order, most.max(1), share);
+    let mut placed: Vec<Placed> =
+        (0..).zip(places).map(|(number, &place)| Placed { place, number }).collect();
+    let cells = cut(&mut placed, most.max(1), share);
     let mut start = 0;
     let ranges = cells.into_iter().map(|length| {
         start += length;
         start - length..start
     });
     let ranges = ranges.collect();
-    (order, ranges)
+    (placed.into_iter().map(|placed| placed.number).collect(), ranges)
 }
 
 /// Lengths of the cells.
-fn cut(places: &[[f32; 4]], order: &mut [u32], most: usize, share: f64) -> Vec<usize> {
-    if order.len() <= most {
-        return if order.is_empty() { Vec::new() } else { vec![order.len()] };
+fn cut(placed: &mut [Placed], most: usize, share: f64) -> Vec<usize> {
+    if placed.len() <= most {
+        return if placed.is_empty() { Vec::new() } else { vec![placed.len()] };
     }
-    let side = longest_side(places, order);
-    let place = |number: u32| places[number as usize][side];
+    let side = longest_side(placed);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share")]
-    let middle = ((share * order.len() as f64) as usize).clamp(1, order.len() - 1);
-    order.select_nth_unstable_by(middle, |&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));
-    let (low, high) = order.split_at_mut(middle);
-    let (mut low, high) =
-        rayon::join(|| cut(places, low, most, share), || cut(places, high, most, share));
+    let middle = ((share * placed.len() as f64) as usize).clamp(1, placed.len() - 1);
+    let key = |placed: &Placed| placed.place[side];
+    placed.select_nth_unstable_by(middle, |a, b| {
+        key(a).total_cmp(&key(b)).then(a.number.cmp(&b.number))
+    });
+    let (low, high) = placed.split_at_mut(middle);
+    let (mut low, high) = rayon::join(|| cut(low, most, share), || cut(high, most, share));
     low.extend(high);
     low
 }
 
-fn longest_side(places: &[[f32; 4]], order: &[u32]) -> usize {
+fn longest_side(placed: &[Placed]) -> usize {
     let mut least = [f32::MAX; 4];
     let mut most = [f32::MIN; 4];
-    for &number in order {
-        let place = places[number as usize];
+    for Placed { place, .. } in placed {
         for side in 0..4 {
             least[side] = least[side].min(place[side]);
             most[side] = most[side].max(place[side]);
@@ -51,4 +58,25 @@ fn longest_side(places: &[[f32; 4]], order: &[u32]) -> usize {
             if most[side] - least[side] > most[best] - least[best] { side } else { best }
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_in_one_small_cell() {
+        let places: Vec<[f32; 4]> = (0..1000u16)
+            .map(|i| [f32::from(i * 37 % 101), f32::from(i % 7), 0.5, f32::NAN])
+            .collect();
+        let (mut order, ranges) = split(&places, 16, 0.4);
+        assert!(ranges.iter().all(|range| (1..=16).contains(&range.len())));
+        let ends: Vec<usize> = ranges.iter().map(|range| range.end).collect();
+        let starts: Vec<usize> = ranges.iter().map(|range| range.start).collect();
+        assert_eq!(starts[1..], ends[..ends.len() - 1]);
+        assert_eq!((starts[0], ends.last()), (0, Some(&1000)));
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..1000));
+        assert_eq!(split(&[], 16, 0.4), (Vec::new(), Vec::new()));
+    }
 }

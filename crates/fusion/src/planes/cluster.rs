@@ -60,7 +60,7 @@ impl Cluster {
         let sums = Sums::of_edge(planes, item.midpoint);
         let [a, b] = planes.map(|plane| plane.normal);
         let axis = (a + b).try_normalize().unwrap_or(a);
-        let cap = Cap::of(a).taking_in(b).unwrap_or(Cap::of(a));
+        let cap = Cap::of(a).taking_in(b).unwrap_or(Cap::of(a).reaching(MAX_CHORD_SQUARED));
         let chord_squared = a.distance_squared(axis).max(b.distance_squared(axis));
         let acceptance = if chord_squared > MAX_CHORD_SQUARED {
             1.0
@@ -130,7 +130,7 @@ impl Cluster {
         let chord_squared = cap.map_or(4.0, |cap| cap.chord_squared);
         let least = model.patch(model.acceptance(chord_squared, 0.0), edges);
         if least >= most {
-            return Bound { cost: least, ..self.bound };
+            return Bound { cost: f32::INFINITY, ..self.bound };
         }
         let sums = self.sums.plus(&other.sums);
         bound(cap, [&wide.blocks, &narrow.blocks], &sums, model)

@@ -2,8 +2,7 @@
 //!
 //! What is culled together are planes, wherever their edges are: two edges far apart may share a
 //! patch if one line of sight along their faces goes for both. So clusters are compared by where
-//! their planes lie ([`Model::place`]), and a cluster knows its planes and nothing else of its
-//! edges.
+//! their planes lie ([`Model::place`]).
 //!
 //! 1. That space, of four dimensions, is cut into cells of a few dozen clusters ([`cells`]). In each
 //!    cell, those two are fused that gain most, again and again, until some six tenths are left
@@ -148,8 +147,8 @@ impl<'a> Search<'a> {
         Ok(clusters)
     }
 
-    /// Edges become clusters only in the cell that is worked on, and four in ten are gone before the
-    /// next: this is where memory is largest.
+    /// Edges become clusters only in the cell that is worked on, and four in ten of those are gone
+    /// before the next, so that there is never a cluster for each edge.
     fn first_round(&self) -> Result<Vec<Cluster>, Cancelled> {
         let (table, model) = (self.table, &self.model);
         let places: Vec<_> =
@@ -197,7 +196,7 @@ fn fuse_cell(table: &Table, model: &Model, part: Vec<Cluster>, looks: usize) -> 
 
 /// Clusters by cell.
 fn in_parts(clusters: Vec<Cluster>, model: &Model, cell: usize, cut: f64) -> Vec<Vec<Cluster>> {
-    let places: Vec<_> = clusters.iter().map(|cluster| cluster.place(model)).collect();
+    let places: Vec<_> = clusters.par_iter().map(|cluster| cluster.place(model)).collect();
     let (order, ranges) = cells::split(&places, cell, cut);
     let mut clusters: Vec<Option<Cluster>> = clusters.into_iter().map(Some).collect();
     let mut part = |range: std::ops::Range<usize>| {

@@ -4,6 +4,10 @@ use super::cell::{Cell, LEAST_GAIN};
 use super::cluster::Cluster;
 use super::outlines::Outline;
 
+/// Most edges of a cluster that are moved or given up: in larger ones, which flat parts make, an edge
+/// costs next to nothing, and to look for a better place takes time in proportion to their size.
+const MOST_EDGES: usize = 512;
+
 /// How far a rough gain may be from a true one, as a share of what a move releases.
 const ROUGHNESS: f32 = 0.5;
 
@@ -20,6 +24,9 @@ impl Cell<'_> {
     pub(crate) fn move_edges(&mut self, looks: usize) {
         for number in 0..self.clusters.len() {
             let Some(cluster) = &self.clusters[number] else { continue };
+            if cluster.items.len() > MOST_EDGES {
+                continue;
+            }
             for (unit, may_shrink) in cluster.units(self.table) {
                 self.move_unit(number, &unit, may_shrink, looks);
             }
@@ -80,6 +87,9 @@ impl Cell<'_> {
 
     fn dissolve_one(&mut self, number: usize) {
         let (table, model) = (self.table, self.model);
+        if self.clusters[number].as_ref().is_none_or(|cluster| cluster.items.len() > MOST_EDGES) {
+            return;
+        }
         let Some(cluster) = self.clusters[number].take() else { return };
         self.outlines.remove(number);
         // What its edges may still cost elsewhere.

@@ -9,6 +9,9 @@ use crate::progress::Counter;
 /// How many clusters are torn apart together.
 const TORN: [usize; 4] = [2, 3, 4, 6];
 
+/// Most edges that are torn apart at once: each is compared with all the others.
+const MOST_EDGES: usize = 1024;
+
 impl Cell<'_> {
     /// Tears a cluster and some that lie beside it into edges, and fuses these again. The better
     /// one stays.
@@ -38,6 +41,11 @@ impl Cell<'_> {
         }
         let before: f32 =
             torn.iter().filter_map(|&n| Some(self.clusters[n].as_ref()?.bound.cost)).sum();
+        let edges: usize =
+            torn.iter().filter_map(|&n| Some(self.clusters[n].as_ref()?.items.len())).sum();
+        if edges > MOST_EDGES {
+            return;
+        }
         let items = torn.iter().filter_map(|&n| self.clusters[n].as_ref()).flat_map(|c| &c.items);
         let pieces = items.map(|&item| Cluster::of_item(table, item, model)).collect();
         let mut inner = Cell::new(table, model, pieces);
