@@ -242,7 +242,8 @@ fn areas_lie_under_the_lines() {
     assert!(svg.contains(expected), "{svg}");
     let png = Pixmap::decode_png(&to_png(&drawing, &Style::default()).unwrap()).unwrap();
     let at = |x, y| png.pixel(x, y).map(|p| [p.red(), p.green(), p.blue()]).unwrap();
-    let (land, paper, ink) = ([0, 200, 0], [255; 3], [0; 3]);
+    let (land, paper) = ([0, 200, 0], [255; 3]);
     assert_eq!([at(25, 25), at(30, 40), at(40, 40), at(70, 40)], [land, land, paper, paper]);
-    assert_eq!(at(49, 50), ink, "a line over the area");
+    let [red, green, blue] = at(49, 50);
+    assert!(red == 0 && green < 100 && blue == 0, "a line over the area, whose rim is blended");
 }
