@@ -13,28 +13,25 @@ use glam::DVec3;
 /// keep it going for so long.
 const MAX_SCANS: usize = 64;
 
-/// The axis of the smallest cap around unit vectors, to within rounding; `None` if there are none,
-/// or they lie so far apart that no cap below a hemisphere holds them. Linear in each of a few
-/// scans. Ties go to the vector that comes first.
-pub(crate) fn axis_of_smallest_cap(
-    directions: impl Iterator<Item = DVec3> + Clone,
-) -> Option<DVec3> {
-    let mut axis = directions.clone().next()?;
-    let mut radius_squared = 0.0;
-    let mut support = vec![axis];
+/// The smallest cap around unit vectors, to within rounding; `None` if there are none, or they lie so
+/// far apart that no cap below a hemisphere holds them. Linear in each of a few scans. Ties go to the
+/// vector that comes first.
+pub(crate) fn smallest_cap(directions: impl Iterator<Item = DVec3> + Clone) -> Option<Cap> {
+    let first = directions.clone().next()?;
+    let mut cap = Cap { axis: first, radius_squared: 0.0, support: [first; 3], count: 1 };
     for _ in 0..MAX_SCANS {
-        let farthest = farthest_from(axis, directions.clone())?;
-        if farthest.distance_squared(axis) <= radius_squared {
+        let farthest = farthest_from(cap.axis, directions.clone())?;
+        if farthest.distance_squared(cap.axis) <= cap.radius_squared {
             break;
         }
-        support.push(farthest);
-        let cap = cap_of_support(&support)?;
-        if cap.radius_squared <= radius_squared {
+        let [a, b, c] = cap.support;
+        let wider = cap_of_support(&[a, b, c, farthest], cap.count)?;
+        if wider.radius_squared <= cap.radius_squared {
             break;
         }
-        (axis, radius_squared, support) = (cap.axis, cap.radius_squared, cap.support);
+        cap = wider;
     }
-    Some(axis)
+    Some(cap)
 }
 
 fn farthest_from(axis: DVec3, directions: impl Iterator<Item = DVec3>) -> Option<DVec3> {
@@ -44,32 +41,46 @@ fn farthest_from(axis: DVec3, directions: impl Iterator<Item = DVec3>) -> Option
         .map(|(_, d)| d)
 }
 
-struct Cap {
-    axis: DVec3,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cap {
+    /// Unit length, up to rounding.
+    pub(crate) axis: DVec3,
     /// Square of the chord from the axis to the rim: grows with the angle, without cancellation.
-    radius_squared: f64,
-    /// The two or three directions on its rim.
-    support: Vec<DVec3>,
+    pub(crate) radius_squared: f64,
+    /// The one to three directions on its rim come first.
+    support: [DVec3; 3],
+    count: usize,
 }
 
-/// The smallest cap around up to four directions: of all caps held up by two or three of them, the
-/// one whose axis is nearest to its farthest direction. No other can be smaller.
-fn cap_of_support(directions: &[DVec3]) -> Option<Cap> {
+impl Cap {
+    /// Tangent of its half-angle, roughly; infinite or below zero from a hemisphere on.
+    pub(crate) fn tan(&self) -> f64 {
+        let (sin_squared, cos) = (
+            self.radius_squared * (1.0 - 0.25 * self.radius_squared),
+            1.0 - 0.5 * self.radius_squared,
+        );
+        sin_squared.sqrt() / cos
+    }
+}
+
+/// The smallest cap around the first `count` of four directions and the last: of all caps held up by
+/// the last and one or two others, the one whose axis is nearest to its farthest direction. If the
+/// last lies outside the smallest cap of the others, no other can be smaller.
+fn cap_of_support(&[a, b, c, last]: &[DVec3; 4], count: usize) -> Option<Cap> {
+    let others = &[a, b, c][..count];
     let mut smallest: Option<Cap> = None;
-    let mut consider = |axis: DVec3, support: &[DVec3]| {
+    let mut consider = |axis: DVec3, support: [DVec3; 3], count: usize| {
         let Some(axis) = axis.try_normalize() else { return };
-        let radius_squared =
-            directions.iter().map(|d| d.distance_squared(axis)).fold(0.0, f64::max);
-        if smallest.as_ref().is_none_or(|cap| radius_squared < cap.radius_squared) {
-            smallest = Some(Cap { axis, radius_squared, support: support.to_vec() });
+        let farthest = |radius: f64, d: &DVec3| radius.max(d.distance_squared(axis));
+        let radius_squared = others.iter().fold(last.distance_squared(axis), farthest);
+        if smallest.is_none_or(|cap| radius_squared < cap.radius_squared) {
+            smallest = Some(Cap { axis, radius_squared, support, count });
         }
     };
-    for (i, &a) in directions.iter().enumerate() {
-        for (j, &b) in directions.iter().enumerate().skip(i + 1) {
-            consider(a + b, &[a, b]);
-            for &c in &directions[j + 1..] {
-                consider(circumcenter(a, b, c), &[a, b, c]);
-            }
+    for (i, &a) in others.iter().enumerate() {
+        consider(a + last, [last, a, a], 2);
+        for &b in &others[i + 1..] {
+            consider(circumcenter(last, a, b), [last, a, b], 3);
         }
     }
     smallest

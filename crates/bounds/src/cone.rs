@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::cap::axis_of_smallest_cap;
+use crate::cap::smallest_cap;
 
 /// What a computed sine or cosine may be off by: a cross product, a length and the normals' own
 /// rounding make some 4 units of 2⁻⁵³.
@@ -45,7 +45,7 @@ impl NormalCone {
     ///
     /// Open if there are none, or as [`NormalCone::around`] says.
     pub fn minimal(normals: impl Iterator<Item = DVec3> + Clone) -> Self {
-        axis_of_smallest_cap(normals.clone()).map_or(Self::OPEN, |axis| Self::around(axis, normals))
+        smallest_cap(normals.clone()).map_or(Self::OPEN, |cap| Self::around(cap.axis, normals))
     }
 
     /// The narrowest cone with this unit `axis` around unit `normals`: one scan. This is how a

@@ -14,7 +14,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{NormalCone, Plane};
+use crate::Plane;
+use crate::cap::Cap;
 
 /// Scans after which a place is taken as it is. Patches of the bunny need 6, on the mean.
 const MAX_SCANS: usize = 24;
@@ -39,27 +40,27 @@ struct Height {
 /// Bounds the spread of heights at x from below: `at_start − fall · x`.
 type Cut = Height;
 
-/// A point on the line along the axis of `cone`, which holds the normals, on which the planes are
+/// A point on the line along the axis of `cap`, which holds the normals, on which the planes are
 /// close together: never farther apart than on the line through the mean of their points, and no
 /// farther from it than the farthest of these points. A few scans.
 pub(crate) fn point_of_least_spread(
-    cone: &NormalCone,
+    cap: &Cap,
     planes: impl Iterator<Item = Plane> + Clone,
 ) -> DVec3 {
     let count = planes.clone().count().max(1) as f64;
     let start = planes.clone().map(|plane| plane.point).sum::<DVec3>() / count;
     let reach_squared = planes.clone().map(|p| p.point.distance_squared(start)).fold(0.0, f64::max);
     let reach = reach_squared.sqrt();
-    let (right, up) = cone.axis.any_orthonormal_pair();
+    let (right, up) = cap.axis.any_orthonormal_pair();
     let height = |plane: Plane| {
-        let cos = plane.normal.dot(cone.axis);
+        let cos = plane.normal.dot(cap.axis);
         Height {
             at_start: plane.normal.dot(plane.point - start) / cos,
             fall: DVec2::new(plane.normal.dot(right), plane.normal.dot(up)) / cos,
         }
     };
     let heights: Vec<Height> = planes.map(height).collect();
-    let stiffness = cone.sin / cone.cos / (REACHES_TO_VIEWPOINT * reach);
+    let stiffness = cap.tan() / (REACHES_TO_VIEWPOINT * reach);
     if !(stiffness > 0.0 && stiffness.is_finite()) {
         return start;
     }
@@ -165,6 +166,7 @@ fn crossing(a: Cut, b: Cut) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cap::smallest_cap;
     use proptest::prelude::*;
 
     fn heights() -> impl Strategy<Value = Vec<Height>> {
@@ -198,9 +200,9 @@ mod tests {
             Plane { normal, point: point + 0.1 * point.dot(point + 9.0 * DVec3::X) * DVec3::Z }
         };
         let planes: Vec<Plane> = [0.0, 2.0, 4.0].map(plane).to_vec();
-        let cone = NormalCone::minimal(planes.iter().map(|plane| plane.normal));
-        let place = point_of_least_spread(&cone, planes.iter().copied());
-        let across = (place - planes.iter().map(|p| p.point).sum::<DVec3>() / 3.0).cross(cone.axis);
+        let cap = smallest_cap(planes.iter().map(|plane| plane.normal)).unwrap();
+        let place = point_of_least_spread(&cap, planes.iter().copied());
+        let across = (place - planes.iter().map(|p| p.point).sum::<DVec3>() / 3.0).cross(cap.axis);
         assert!((1.0..1.6).contains(&across.length()), "{place}");
     }
 

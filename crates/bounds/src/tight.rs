@@ -34,6 +34,7 @@
 use glam::DVec3;
 
 use crate::NormalCone;
+use crate::cap::smallest_cap;
 use crate::cone::is_unit;
 use crate::double_cone::{DoubleCone, MAX_HALF_ANGLE};
 use crate::least_spread::point_of_least_spread;
@@ -62,11 +63,10 @@ impl DoubleCone {
     /// [`DoubleCone::ALWAYS`] if there are none, if α is above [`MAX_HALF_ANGLE`], or if a normal is
     /// not of unit length or a number is NaN or does not fit an f32. Linear: 10 to 20 scans.
     pub fn tight(planes: impl Iterator<Item = Plane> + Clone) -> Self {
-        let cone = NormalCone::minimal(planes.clone().map(|plane| plane.normal));
-        if cone.is_open() {
+        let Some(cap) = smallest_cap(planes.clone().map(|plane| plane.normal)) else {
             return Self::ALWAYS;
-        }
-        Self::about(cone.axis, point_of_least_spread(&cone, planes.clone()), planes)
+        };
+        Self::about(cap.axis, point_of_least_spread(&cap, planes.clone()), planes)
     }
 
     /// The tightest bound about the line through `point` along the unit `axis`, both rounded to f32

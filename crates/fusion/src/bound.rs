@@ -7,36 +7,67 @@ use glam::DVec3;
 use crate::BoundKind;
 use crate::geometry::{EdgeShape, Frame};
 
-/// The bound that goes with the patch, in model units. Edges without a shape do not count.
+/// The bound that goes with the patch, in model units. All its edges have a shape.
 pub(crate) fn bound(frame: &Frame, edges: &[EdgeId], kind: BoundKind) -> DoubleCone {
-    let shapes: Vec<EdgeShape> = edges.iter().filter_map(|&edge| frame.shape(edge)).collect();
-    let position = |vertex: u32| frame.mesh.position(vertex).as_dvec3();
-    let lines = shapes.iter().map(|edge| edge.vertices.map(position));
-    let normals = shapes.iter().flat_map(|edge| edge.normals);
-    let (cone, sphere) = match kind {
-        BoundKind::Mean => {
-            (NormalCone::mean(normals), Sphere::mean(vertices(&shapes).map(position)))
-        }
-        BoundKind::Reduced => (NormalCone::mean(normals), Sphere::reduced(lines)),
-        BoundKind::Minimal => (NormalCone::minimal(normals), Sphere::minimal(lines)),
-        BoundKind::Tight => {
-            let planes: Vec<Plane> = shapes.iter().zip(lines).flat_map(planes_of).collect();
-            return DoubleCone::tight(planes.iter().copied());
-        }
+    let cone_and_sphere = match kind {
+        BoundKind::Mean => mean,
+        BoundKind::Reduced => reduced,
+        BoundKind::Minimal => minimal,
+        BoundKind::Tight => return DoubleCone::tight(planes(frame, edges).iter().copied()),
     };
+    let shapes: Vec<EdgeShape> = edges.iter().filter_map(|&edge| frame.shape(edge)).collect();
+    let (cone, sphere) = cone_and_sphere(frame, &shapes);
     DoubleCone::from(SpatializedNormalCone { cone, sphere })
 }
 
-/// The planes of both faces, through the middle of the edge that they share: the point of each that
-/// is nearest to the rest of the patch.
-fn planes_of((shape, [tail, head]): (&EdgeShape, [DVec3; 2])) -> [Plane; 2] {
-    shape.normals.map(|normal| Plane { normal, point: 0.5 * (tail + head) })
-}
-
-/// The distinct vertices of the edges.
-fn vertices(shapes: &[EdgeShape]) -> impl Iterator<Item = u32> + Clone {
+fn mean(frame: &Frame, shapes: &[EdgeShape]) -> (NormalCone, Sphere) {
     let mut vertices: Vec<u32> = shapes.iter().flat_map(|edge| edge.vertices).collect();
     vertices.sort_unstable();
     vertices.dedup();
-    vertices.into_iter()
+    let positions = vertices.into_iter().map(|vertex| position(frame, vertex));
+    (NormalCone::mean(normals(shapes)), Sphere::mean(positions))
+}
+
+fn reduced(frame: &Frame, shapes: &[EdgeShape]) -> (NormalCone, Sphere) {
+    (NormalCone::mean(normals(shapes)), Sphere::reduced(lines(frame, shapes)))
+}
+
+fn minimal(frame: &Frame, shapes: &[EdgeShape]) -> (NormalCone, Sphere) {
+    (NormalCone::minimal(normals(shapes)), Sphere::minimal(lines(frame, shapes)))
+}
+
+fn normals(shapes: &[EdgeShape]) -> impl Iterator<Item = DVec3> + Clone {
+    shapes.iter().flat_map(|edge| edge.normals)
+}
+
+fn lines(frame: &Frame, shapes: &[EdgeShape]) -> impl Iterator<Item = [DVec3; 2]> + Clone {
+    shapes.iter().map(|edge| edge.vertices.map(|vertex| position(frame, vertex)))
+}
+
+fn position(frame: &Frame, vertex: u32) -> DVec3 {
+    frame.mesh.position(vertex).as_dvec3()
+}
+
+/// The planes of the faces beside the edges, once each, through the middle of an edge of theirs: of
+/// all points, it is one that is near to the rest of the patch.
+fn planes(frame: &Frame, edges: &[EdgeId]) -> Vec<Plane> {
+    let mut sides: Vec<(u64, EdgeId)> = Vec::with_capacity(2 * edges.len());
+    for &edge in edges {
+        let ([left, right], is_turned) = frame.triangles(edge);
+        // A face that one edge sees turned over is another plane.
+        sides.push((2 * u64::from(left), edge));
+        sides.push((2 * u64::from(right) + u64::from(is_turned), edge));
+    }
+    sides.sort_unstable();
+    sides.dedup_by_key(|(side, _)| *side);
+    let plane = |(side, edge): (u64, EdgeId)| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "half of it is the index of a triangle"
+        )]
+        let normal = frame.normal((side / 2) as u32);
+        let normal = if side % 2 == 1 { -normal } else { normal };
+        Plane { normal, point: frame.middle(edge) }
+    };
+    sides.into_iter().map(plane).collect()
 }

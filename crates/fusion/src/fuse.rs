@@ -80,7 +80,7 @@ fn grow(
     counter: &Counter,
 ) -> Result<Grown, Cancelled> {
     let (fusible, mut without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
-        edges.into_par_iter().partition(|&edge| frame.shape(edge).is_some());
+        edges.into_par_iter().partition(|&edge| frame.has_shape(edge));
     counter.count(2 * without_shape.len())?;
     let cost = match params.levels {
         Levels::One => params.cost,

@@ -1,7 +1,8 @@
 //! Edges as fusion sees them: in f64, in a frame where half the longest side of the mesh is 1.
 
-use drypoint_mesh::{EdgeId, HalfEdge, Mesh, MeshAdjacency, Wing};
+use drypoint_mesh::{EdgeClass, EdgeId, HalfEdge, Mesh, MeshAdjacency};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Sine of the smallest corner angle at which a face's normal is trusted. Differences of f32 lose at
 /// most 2⁻⁵³ of their size in f64, so above this the normal is off by some 1e-8 radians, well within
@@ -29,6 +30,8 @@ pub(crate) struct Frame<'a> {
     center: DVec3,
     /// Half the longest side of the mesh's box.
     pub(crate) unit: f64,
+    /// Of each triangle: 24 bytes each. Zero for one that spans no plane that can be trusted.
+    normals: Vec<DVec3>,
 }
 
 impl<'a> Frame<'a> {
@@ -36,16 +39,32 @@ impl<'a> Frame<'a> {
     pub(crate) fn new(mesh: &'a Mesh, adjacency: &'a MeshAdjacency) -> Option<Self> {
         let bounds = mesh.bounds()?;
         let unit = bounds.half_longest_side();
-        (unit > 0.0).then(|| Self { mesh, adjacency, center: bounds.center(), unit })
+        let normals = || {
+            let triangles = mesh.triangles().par_iter();
+            triangles.map(|&corners| unit_normal(mesh, corners).unwrap_or_default()).collect()
+        };
+        (unit > 0.0).then(|| Self {
+            mesh,
+            adjacency,
+            center: bounds.center(),
+            unit,
+            normals: normals(),
+        })
     }
 
     fn position(&self, vertex: u32) -> DVec3 {
         (self.mesh.position(vertex).as_dvec3() - self.center) / self.unit
     }
 
+    /// The middle of an edge, in model units.
+    pub(crate) fn middle(&self, edge: EdgeId) -> DVec3 {
+        let [a, b] = self.ends(edge).map(|vertex| self.mesh.position(vertex).as_dvec3());
+        0.5 * (a + b)
+    }
+
+    /// The same in the frame.
     pub(crate) fn midpoint(&self, edge: EdgeId) -> DVec3 {
-        let [a, b] = self.adjacency.wing(edge).ends();
-        0.5 * (self.position(a) + self.position(b))
+        (self.middle(edge) - self.center) / self.unit
     }
 
     /// Vertices at its ends, lower first; equal numbers are equal places.
@@ -53,27 +72,37 @@ impl<'a> Frame<'a> {
         self.adjacency.wing(edge).ends()
     }
 
-    /// `None` if a face of the edge spans no plane that can be trusted, or is missing.
-    pub(crate) fn shape(&self, edge: EdgeId) -> Option<EdgeShape> {
-        let wing = self.adjacency.wing(edge);
-        if wing.right == Wing::NONE {
-            return None;
-        }
-        let normals = [self.unit_normal(wing.left_face())?, self.unit_normal(wing.right_face())?];
-        let vertices = wing.ends();
-        let [tail, head] = vertices.map(|v| self.mesh.position(v).as_dvec3());
-        let direction = (head - tail).try_normalize()?;
-        Some(EdgeShape { normals, vertices, ends: vertices.map(|v| self.position(v)), direction })
+    /// Whether both faces of the edge are there, and span planes that can be trusted.
+    pub(crate) fn has_shape(&self, edge: EdgeId) -> bool {
+        let is_trusted = |&triangle: &u32| self.normal(triangle) != DVec3::ZERO;
+        self.adjacency.class(edge) != EdgeClass::Boundary
+            && self.triangles(edge).0.iter().all(is_trusted)
     }
 
-    /// Normal and offset of a triangle's plane; `None` if it spans none that can be trusted.
-    pub(crate) fn plane(&self, triangle: [u32; 3]) -> Option<(DVec3, f64)> {
-        let [a, b, c] = triangle;
-        // A sliver may be trusted at one corner and not at another, and edges look from each.
-        let turned = [[a, b, c], [b, c, a], [c, a, b]];
-        let normal = turned.into_iter().find_map(|corners| self.unit_normal(corners))?;
-        let middle: DVec3 = triangle.iter().map(|&vertex| self.position(vertex)).sum();
-        Some((normal, normal.dot(middle) / 3.0))
+    /// `None` if [`Frame::has_shape`] is false.
+    pub(crate) fn shape(&self, edge: EdgeId) -> Option<EdgeShape> {
+        if !self.has_shape(edge) {
+            return None;
+        }
+        let ([left, right], is_turned) = self.triangles(edge);
+        let right = if is_turned { -self.normal(right) } else { self.normal(right) };
+        let vertices = self.ends(edge);
+        let [tail, head] = vertices.map(|v| self.mesh.position(v).as_dvec3());
+        let direction = (head - tail).try_normalize()?;
+        let ends = vertices.map(|v| self.position(v));
+        Some(EdgeShape { normals: [self.normal(left), right], vertices, ends, direction })
+    }
+
+    /// Unit normal of a triangle; zero if it spans no plane that can be trusted.
+    pub(crate) fn normal(&self, triangle: u32) -> DVec3 {
+        self.normals[triangle as usize]
+    }
+
+    /// n · p of a triangle's plane, from the mean of its corners.
+    pub(crate) fn offset(&self, triangle: u32) -> f64 {
+        let corners = self.mesh.triangles()[triangle as usize];
+        let middle: DVec3 = corners.iter().map(|&vertex| self.position(vertex)).sum();
+        self.normal(triangle).dot(middle) / 3.0
     }
 
     /// The triangles on the left and the right of an edge that is no boundary, and whether the wing
@@ -82,12 +111,17 @@ impl<'a> Frame<'a> {
         let triangles = self.adjacency.sides(edge).map(HalfEdge::triangle);
         (triangles, self.adjacency.is_right_turned(edge))
     }
+}
 
-    fn unit_normal(&self, face: [u32; 3]) -> Option<DVec3> {
-        let [a, b, c] = face.map(|v| self.mesh.position(v).as_dvec3());
-        let (u, v) = ((b - a).try_normalize()?, (c - a).try_normalize()?);
+/// The unit normal of a triangle, from the first of its corners where it can be trusted.
+fn unit_normal(mesh: &Mesh, corners: [u32; 3]) -> Option<DVec3> {
+    let [a, b, c] = corners.map(|vertex| mesh.position(vertex).as_dvec3());
+    // A sliver's angle may be small at any one corner, as long as the normal is sure.
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().find_map(|[a, b, c]| {
+        let (u, v) = (b - a, c - a);
         let normal = u.cross(v);
-        // A sliver's angle may be small at any one corner, as long as the normal is sure.
-        (normal.length() >= LEAST_SINE).then(|| normal.normalize())
-    }
+        // |u × v| ≥ sin |u| |v|, without dividing by lengths that may be zero.
+        let least_squared = LEAST_SINE * LEAST_SINE * u.length_squared() * v.length_squared();
+        if normal.length_squared() > least_squared { normal.try_normalize() } else { None }
+    })
 }

@@ -19,6 +19,13 @@ impl Cap {
         Self { axis: normal, chord_squared: 0.0, support: [normal; 3], count: 1 }
     }
 
+    /// The smallest cap that holds two; `None` if they are opposite.
+    pub(crate) fn of_two(a: Vec3, b: Vec3) -> Option<Self> {
+        let axis = (a + b).try_normalize()?;
+        let chord_squared = a.distance_squared(axis).max(b.distance_squared(axis));
+        Some(Self { axis, chord_squared, support: [b, a, a], count: 2 })
+    }
+
     /// This, reaching as far as that.
     pub(crate) fn reaching(self, chord_squared: f32) -> Self {
         Self { chord_squared, ..self }

@@ -1,6 +1,6 @@
 //! A few dozen clusters that lie close together, and how they become fewer.
 
-use super::cluster::{Bound, Cluster};
+use super::cluster::{Bound, Cluster, Clusters};
 use super::model::Model;
 use super::outlines::{Gains, Outline, Outlines};
 use super::table::Table;
@@ -8,104 +8,156 @@ use super::table::Table;
 /// What a change must gain at least, so that rounding alone changes nothing.
 pub(crate) const LEAST_GAIN: f32 = 1e-3;
 
+/// Most partners of a cluster that are looked at closely.
+pub(crate) const MOST_LOOKS: usize = 4;
+
 /// Clusters that are worked on together.
 pub(crate) struct Cell<'a> {
     pub(crate) table: &'a Table,
     pub(crate) model: &'a Model,
-    pub(crate) clusters: Vec<Option<Cluster>>,
+    pub(crate) clusters: Vec<Option<Box<Cluster>>>,
     pub(crate) outlines: Outlines,
     pub(crate) gains: Gains,
+    pub(crate) care: Care,
 }
 
-/// The best that a cluster can be fused with, as far as it was looked at.
-#[derive(Clone, Copy)]
-struct Partner {
+/// How carefully clusters are looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Care {
+    /// How many likely partners are looked at closely, 1 ..= [`MOST_LOOKS`].
+    pub(crate) looks: usize,
+    /// Whether these are looked at only when it is a cluster's turn by what it would gain at a glance,
+    /// and not all before the first are fused: some 40 % of the time, for patches that cost 1 % more.
+    pub(crate) is_hasty: bool,
+    /// How much may be lost by a change, as a share of what may be at most: from 1 down to 0.
+    pub(crate) heat: f32,
+}
+
+/// A cluster that another may be fused with, as it was when it was looked at.
+#[derive(Clone, Copy, Default)]
+struct Candidate {
     number: usize,
-    /// Of the partner, when it was looked at.
     age: u32,
-    bound: Bound,
+}
+
+/// What is known of the best that a cluster can be fused with.
+#[derive(Clone, Copy)]
+enum Partner {
+    /// Nothing gains.
+    Nobody,
+    /// The first few of these are the likeliest, at a glance.
+    Likely([Candidate; MOST_LOOKS], usize),
+    /// The best of them, and the bound of both.
+    Sure(Candidate, Bound),
 }
 
 impl<'a> Cell<'a> {
-    pub(crate) fn new(table: &'a Table, model: &'a Model, clusters: Vec<Cluster>) -> Self {
-        let mut outlines = Outlines::default();
+    pub(crate) fn new(table: &'a Table, model: &'a Model, clusters: Clusters, care: Care) -> Self {
+        let mut outlines = Outlines::with_room_for(clusters.len());
         for cluster in &clusters {
             outlines.push(&Outline::of(cluster, model));
         }
         let clusters = clusters.into_iter().map(Some).collect();
-        Self { table, model, clusters, outlines, gains: Gains::default() }
+        Self { table, model, clusters, outlines, gains: Gains::default(), care }
     }
 
-    pub(crate) fn into_clusters(self) -> Vec<Cluster> {
+    pub(crate) fn into_clusters(self) -> Clusters {
         self.clusters.into_iter().flatten().collect()
     }
 
-    pub(crate) fn replace(&mut self, number: usize, cluster: Cluster) {
+    pub(crate) fn replace(&mut self, number: usize, cluster: Box<Cluster>) {
         self.outlines.set(number, &Outline::of(&cluster, self.model));
         self.clusters[number] = Some(cluster);
     }
 
-    pub(crate) fn remove(&mut self, number: usize) -> Option<Cluster> {
+    pub(crate) fn remove(&mut self, number: usize) -> Option<Box<Cluster>> {
         self.outlines.remove(number);
         self.clusters[number].take()
     }
 
     /// Fuses the two clusters that gain most, again and again, until `least` are left or none
-    /// gains. For each cluster, the `looks` likeliest partners are looked at closely.
-    pub(crate) fn fuse_best(&mut self, least: usize, looks: usize) {
+    /// gains.
+    pub(crate) fn fuse_best(&mut self, least: usize) {
         let count = self.clusters.len();
         let mut ages = vec![0u32; count];
         let mut best_gains = Gains::none(count);
-        let mut partners: Vec<Option<Partner>> = vec![None; count];
+        let mut partners = vec![Partner::Nobody; count];
         for (number, best) in partners.iter_mut().enumerate() {
-            let (gain, partner) = self.best_partner(number, &ages, looks);
+            let (mut gain, mut partner) = self.likely_partners(number, &ages);
+            if let Partner::Likely(likely, count) = partner
+                && !self.care.is_hasty
+            {
+                (gain, partner) = self.best_partner(number, &likely[..count]);
+            }
             best_gains.set(number, gain);
             *best = partner;
         }
         let mut left = self.clusters.iter().flatten().count();
         while left > least {
-            let best = best_gains.most().and_then(|(n, _)| Some((n, partners[n]?)));
-            let Some((number, partner)) = best else {
-                break;
+            let Some((number, _)) = best_gains.most() else { break };
+            let is_as_seen = |seen: &Candidate| {
+                self.clusters[seen.number].is_some() && ages[seen.number] == seen.age
             };
-            let other = partner.number;
-            if self.clusters[other].is_some() && ages[other] == partner.age {
-                if let (Some(a), Some(b)) = (self.remove(number), self.remove(other)) {
-                    self.replace(number, Cluster::fused(self.table, a, b, partner.bound));
+            let (gain, partner) = match partners[number] {
+                Partner::Likely(likely, count) if likely[..count].iter().all(is_as_seen) => {
+                    self.best_partner(number, &likely[..count])
                 }
-                best_gains.set(other, f32::NEG_INFINITY);
-                ages[number] += 1;
-                left -= 1;
-            }
-            let (gain, partner) = self.best_partner(number, &ages, looks);
+                Partner::Sure(other, bound) if is_as_seen(&other) => {
+                    if let Some(other) = self.remove(other.number) {
+                        self.absorb(number, &other, bound);
+                    }
+                    best_gains.set(other.number, f32::NEG_INFINITY);
+                    ages[number] += 1;
+                    left -= 1;
+                    self.likely_partners(number, &ages)
+                }
+                _ => self.likely_partners(number, &ages),
+            };
             best_gains.set(number, gain);
             partners[number] = partner;
         }
     }
 
-    fn best_partner(
-        &mut self,
-        number: usize,
-        ages: &[u32],
-        looks: usize,
-    ) -> (f32, Option<Partner>) {
-        let nothing = (f32::NEG_INFINITY, None);
-        let Some(cluster) = &self.clusters[number] else { return nothing };
+    /// Puts the edges of another cluster into one, and the bound that [`Cluster::union`] found.
+    pub(crate) fn absorb(&mut self, number: usize, other: &Cluster, bound: Bound) {
+        if let Some(cluster) = &mut self.clusters[number] {
+            cluster.absorb(self.table, other, bound);
+            self.outlines.set(number, &Outline::of(cluster, self.model));
+        }
+    }
+
+    /// The likeliest partners, and what the first of them gains.
+    fn likely_partners(&mut self, number: usize, ages: &[u32]) -> (f32, Partner) {
+        let nobody = (f32::NEG_INFINITY, Partner::Nobody);
+        let Some(cluster) = &self.clusters[number] else { return nobody };
         let outline = Outline::of(cluster, self.model);
         self.outlines.gains(&outline, self.model, &mut self.gains);
         self.gains.set(number, f32::NEG_INFINITY);
-        let (mut best_gain, mut best) = (LEAST_GAIN, None);
-        for _ in 0..looks {
-            let Some((other, _)) = self.gains.most() else { break };
+        let mut likely = [Candidate::default(); MOST_LOOKS];
+        let (mut count, mut most) = (0, f32::NEG_INFINITY);
+        while count < self.care.looks.min(MOST_LOOKS) {
+            let Some((other, gain)) = self.gains.most() else { break };
             self.gains.set(other, f32::NEG_INFINITY);
-            let Some(candidate) = &self.clusters[other] else { continue };
-            let apart = cluster.bound.cost + candidate.bound.cost;
-            let bound = cluster.union(candidate, self.table, self.model, apart - best_gain);
+            likely[count] = Candidate { number: other, age: ages[other] };
+            most = most.max(gain);
+            count += 1;
+        }
+        if count == 0 { nobody } else { (most, Partner::Likely(likely, count)) }
+    }
+
+    /// The partner that gains most, and how much that is.
+    fn best_partner(&self, number: usize, candidates: &[Candidate]) -> (f32, Partner) {
+        let (mut best_gain, mut best) = (LEAST_GAIN, None);
+        let Some(cluster) = &self.clusters[number] else { return (best_gain, Partner::Nobody) };
+        for &candidate in candidates {
+            let Some(other) = &self.clusters[candidate.number] else { continue };
+            let apart = cluster.bound.cost + other.bound.cost;
+            let bound = cluster.union(other, self.table, self.model, apart - best_gain);
             if apart - bound.cost > best_gain {
                 best_gain = apart - bound.cost;
-                best = Some(Partner { number: other, age: ages[other], bound });
+                best = Some(Partner::Sure(candidate, bound));
             }
         }
-        if best.is_some() { (best_gain, best) } else { nothing }
+        best.map_or((f32::NEG_INFINITY, Partner::Nobody), |partner| (best_gain, partner))
     }
 }

@@ -9,7 +9,7 @@ use wide::{CmpGt, f32x4};
 use super::cap::Cap;
 use super::model::Model;
 use super::sums::Sums;
-use super::table::{Plane, Table};
+use super::table::{Item, Plane, Table};
 
 /// Planes in one block.
 const LANES: usize = 4;
@@ -21,10 +21,13 @@ const CAP_TOLERANCE: f32 = 2e-3;
 const MAX_CHORD_SQUARED: f32 = 1.65;
 
 /// Numbers of edges or planes.
-pub(crate) type Numbers = SmallVec<[u32; 4]>;
+pub(crate) type Numbers = SmallVec<[u32; 8]>;
 
 /// Four planes, a coordinate each.
 pub(crate) type Block = [f32x4; 4];
+
+/// Some planes; the last block repeats its last one.
+type Blocks = SmallVec<[Block; 2]>;
 
 /// What bounds a set of planes, and what the set costs for it.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,27 @@ pub(crate) struct Bound {
     pub(crate) cost: f32,
 }
 
+impl Bound {
+    /// Of the two planes of an edge.
+    pub(crate) fn of_item(table: &Table, item: &Item, model: &Model) -> Self {
+        let [a, b] = item.planes.map(|plane| table.plane(plane).normal);
+        let cap = Cap::of_two(a, b).unwrap_or(Cap::of(a).reaching(4.0));
+        let acceptance = if cap.chord_squared > MAX_CHORD_SQUARED {
+            1.0
+        } else {
+            model.acceptance(cap.chord_squared, 0.0)
+        };
+        let cap = cap.reaching(cap.chord_squared.min(MAX_CHORD_SQUARED));
+        Self {
+            cap,
+            center: item.midpoint,
+            apex_distance: 0.0,
+            acceptance,
+            cost: model.patch(acceptance, 1.0),
+        }
+    }
+}
+
 /// Edges, their planes and their bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
@@ -48,40 +72,30 @@ pub(crate) struct Cluster {
     /// Numbers of its planes, sorted.
     planes: Numbers,
     /// The same planes; the last block repeats its last one.
-    blocks: SmallVec<[Block; 1]>,
+    blocks: Blocks,
     sums: Sums,
     pub(crate) bound: Bound,
 }
 
+/// Some clusters, each in a box: they are moved from cell to cell, and are some 500 bytes long.
+pub(crate) type Clusters = Vec<Box<Cluster>>;
+
 impl Cluster {
     pub(crate) fn of_item(table: &Table, number: u32, model: &Model) -> Self {
         let item = table.item(number);
-        let planes = item.planes.map(|plane| table.plane(plane));
-        let sums = Sums::of_edge(planes, item.midpoint);
-        let [a, b] = planes.map(|plane| plane.normal);
-        let axis = (a + b).try_normalize().unwrap_or(a);
-        let cap = Cap::of(a).taking_in(b).unwrap_or(Cap::of(a).reaching(MAX_CHORD_SQUARED));
-        let chord_squared = a.distance_squared(axis).max(b.distance_squared(axis));
-        let acceptance = if chord_squared > MAX_CHORD_SQUARED {
-            1.0
-        } else {
-            model.acceptance(chord_squared, 0.0)
-        };
-        let bound = Bound {
-            cap,
-            center: item.midpoint,
-            apex_distance: 0.0,
-            acceptance,
-            cost: model.patch(acceptance, 1.0),
-        };
+        let sums = Sums::of_edge(item.planes.map(|plane| table.plane(plane)), item.midpoint);
         let [low, high] = item.planes;
-        let numbers: Numbers = smallvec![low.min(high), low.max(high)];
-        let blocks = blocks(table, &numbers);
-        Self { items: smallvec![number], planes: numbers, blocks, sums, bound }
+        let planes: Numbers = smallvec![low.min(high), low.max(high)];
+        let blocks = blocks(table, &planes);
+        let bound = Bound::of_item(table, item, model);
+        Self { items: smallvec![number], planes, blocks, sums, bound }
     }
 
     /// From scratch; at least one edge.
     pub(crate) fn of_items(table: &Table, items: Numbers, model: &Model) -> Self {
+        if let [item] = items[..] {
+            return Self::of_item(table, item, model);
+        }
         let (planes, blocks, sums) = measured(table, &items);
         let cap = Cap::of(table.plane(planes[0]).normal);
         let bound = bound(Some(cap), [&blocks, &[]], &sums, model);
@@ -207,17 +221,18 @@ impl Cluster {
         model.cost.admits(edges, ends.len())
     }
 
-    /// Both, with the bound that [`Cluster::union`] found.
-    pub(crate) fn fused(table: &Table, mut a: Self, mut b: Self, bound: Bound) -> Self {
-        a.items.append(&mut b.items);
-        let planes = merged(&a.planes, &b.planes);
-        let blocks = blocks(table, &planes);
-        Self { items: a.items, planes, blocks, sums: a.sums.plus(&b.sums), bound }
+    /// Takes in another, with the bound that [`Cluster::union`] found.
+    pub(crate) fn absorb(&mut self, table: &Table, other: &Self, bound: Bound) {
+        self.items.extend_from_slice(&other.items);
+        self.planes = merged(&self.planes, &other.planes);
+        fill_blocks(&mut self.blocks, table, &self.planes);
+        self.sums = self.sums.plus(&other.sums);
+        self.bound = bound;
     }
 }
 
 /// Numbers of the planes of some edges, sorted, these planes, and sums over the edges.
-fn measured(table: &Table, items: &[u32]) -> (Numbers, SmallVec<[Block; 1]>, Sums) {
+fn measured(table: &Table, items: &[u32]) -> (Numbers, Blocks, Sums) {
     let mut planes: Numbers = items.iter().flat_map(|&number| table.item(number).planes).collect();
     planes.sort_unstable();
     planes.dedup();
@@ -254,19 +269,22 @@ fn merged(a: &[u32], b: &[u32]) -> Numbers {
     union
 }
 
-fn blocks(table: &Table, planes: &[u32]) -> SmallVec<[Block; 1]> {
-    let block = |numbers: &[u32]| {
-        let mut columns = [[0f32; LANES]; 4];
-        for lane in 0..LANES {
-            let number = numbers[lane.min(numbers.len() - 1)];
-            let Plane { normal, offset } = table.plane(number);
-            for (column, x) in columns.iter_mut().zip([normal.x, normal.y, normal.z, offset]) {
-                column[lane] = x;
-            }
-        }
-        columns.map(f32x4::from)
-    };
-    planes.chunks(LANES).map(block).collect()
+fn blocks(table: &Table, planes: &[u32]) -> Blocks {
+    let mut blocks = Blocks::new();
+    fill_blocks(&mut blocks, table, planes);
+    blocks
+}
+
+fn fill_blocks(blocks: &mut Blocks, table: &Table, planes: &[u32]) {
+    blocks.clear();
+    blocks.reserve(planes.len().div_ceil(LANES));
+    for numbers in planes.chunks(LANES) {
+        let last = numbers.len() - 1;
+        let rows: [[f32; 4]; LANES] =
+            std::array::from_fn(|lane| table.plane(numbers[lane.min(last)]).to_array());
+        let column = |field: usize| f32x4::from(std::array::from_fn(|lane| rows[lane][field]));
+        blocks.push(std::array::from_fn(column));
+    }
 }
 
 /// What one look at all planes tells.

@@ -1,6 +1,6 @@
 //! Patches of patches.
 
-use super::cluster::Cluster;
+use super::cluster::{Cluster, Clusters};
 use super::model::Model;
 use super::table::Table;
 use super::{CUTS, Effort, STALLED, fuse_cell, in_parts};
@@ -34,15 +34,15 @@ pub(crate) fn group(
             (number, std::mem::replace(&mut first, end)..end)
         })
         .collect();
-    let mut groups: Vec<Cluster> = ranges
+    let mut groups: Clusters = ranges
         .into_par_iter()
-        .map(|(number, items)| Cluster::of_patch(&table, number, items, &model))
+        .map(|(number, items)| Box::new(Cluster::of_patch(&table, number, items, &model)))
         .collect();
     for round in 0.. {
         let before = groups.len() as f64;
         groups = in_parts(groups, &model, effort.cell, CUTS[round % CUTS.len()])
             .into_par_iter()
-            .flat_map_iter(|part| fuse_cell(&table, &model, part, effort.looks))
+            .flat_map_iter(|part| fuse_cell((&table, &model), part, effort, false))
             .collect();
         if groups.len() as f64 >= STALLED * before {
             break;

@@ -11,6 +11,10 @@
 //!    given up, and what gains is fused ([`Cell::refine`]).
 //! 3. Neighbouring clusters are torn into edges, and the pieces fused anew ([`Cell::tear`]).
 //!
+//! Moves and tears may lose a little, and less from sweep to sweep, so that the search does not end
+//! in the first place that is better than all places beside it (Dueck and Scheuer, Threshold
+//! Accepting, Journal of Computational Physics 90, 1990).
+//!
 //! All that ever happens, happens inside one cell, in a fixed order: so cells are worked on in
 //! parallel, and the result is the same for any number of threads. Time and memory are linear in the
 //! number of edges but for the cuts, which take n log n comparisons.
@@ -25,6 +29,7 @@ mod groups;
 mod model;
 mod outlines;
 mod refine;
+mod simd;
 mod sums;
 mod table;
 mod tear;
@@ -38,8 +43,8 @@ use crate::geometry::Frame;
 use crate::grow::Grown;
 use crate::progress::Counter;
 use crate::{Cancelled, CostModel, ViewProfile};
-use cell::Cell;
-use cluster::Cluster;
+use cell::{Care, Cell};
+use cluster::{Cluster, Clusters};
 use model::Model;
 use table::Table;
 
@@ -49,29 +54,38 @@ const CUTS: [f64; 4] = [0.5, 0.4, 0.6, 0.45];
 
 /// Most edges in a cell of the first round, where a cell of many would only take longer; later
 /// cells may hold twice as many each time.
-const FIRST_CELL: usize = 32;
+const FIRST_CELL: usize = 64;
 
 /// Share of its clusters that a cell keeps in a round, at least: fewer, and what should be fused
-/// across a cut is fused with the second best before.
-const KEPT: f64 = 0.6;
+/// across a cut is fused with the second best before. In the first round, and in others.
+const KEPT: [f64; 2] = [0.6, 0.7];
+
+/// The same in haste.
+const KEPT_IN_HASTE: [f64; 2] = [0.4, 0.6];
 
 /// A round that leaves more than this share of the clusters is the last one.
 const STALLED: f64 = 0.99;
 
 /// A round's work on a cluster, as a share of a sweep's work on its edges; and a tear's, in sweeps.
 const WORK_OF_ROUND: f64 = 1.0;
-const WORK_OF_TEAR: f64 = 8.0;
+const WORK_OF_TEAR: f64 = 4.0;
 
 /// How hard to search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// Most clusters in a cell.
     pub(crate) cell: usize,
-    /// How many likely partners of a cluster are looked at closely.
+    /// How many likely partners of a cluster are looked at closely. With one, all is done in haste.
     pub(crate) looks: usize,
     pub(crate) sweeps: usize,
     /// How often all clusters are torn.
     pub(crate) tears: usize,
+}
+
+impl Effort {
+    fn care(self) -> Care {
+        Care { looks: self.looks, is_hasty: self.looks == 1, heat: 0.0 }
+    }
 }
 
 /// Groups `edges`, all of which have a shape.
@@ -109,12 +123,12 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(table: &'a Table, model: Model, effort: Effort, counter: &'a Counter<'a>) -> Self {
-        let rounds = WORK_OF_ROUND / (1.0 - KEPT);
+        let rounds = WORK_OF_ROUND / (1.0 - KEPT[1]);
         let work = rounds + effort.sweeps as f64 + WORK_OF_TEAR * effort.tears as f64;
         Self { table, model, effort, counter, step: 2.0 / work }
     }
 
-    fn run(&self) -> Result<Vec<Cluster>, Cancelled> {
+    fn run(&self) -> Result<Clusters, Cancelled> {
         let mut clusters = self.first_round()?;
         let mut rounds = 1;
         loop {
@@ -122,22 +136,24 @@ impl<'a> Search<'a> {
             let cell = FIRST_CELL.saturating_mul(1 << rounds.min(20)).min(self.effort.cell);
             clusters = self.in_cells(clusters, cell, rounds, |part| {
                 self.count(WORK_OF_ROUND * part.len() as f64)?;
-                Ok(self.fuse(part))
+                Ok(self.fuse(part, false))
             })?;
             rounds += 1;
             if clusters.len() as f64 >= STALLED * before {
                 break;
             }
         }
-        let looks = self.effort.looks;
-        for sweep in 0..self.effort.sweeps + self.effort.tears {
+        let sweeps = self.effort.sweeps + self.effort.tears;
+        for sweep in 0..sweeps {
+            let heat = 1.0 - (sweep + 1) as f32 / sweeps as f32;
+            let care = Care { heat, ..self.effort.care() };
             let is_tear = sweep >= self.effort.sweeps;
             clusters = self.in_cells(clusters, self.effort.cell, rounds + sweep, |part| {
-                let edges: f32 = part.iter().map(Cluster::edges).sum();
-                let mut cell = Cell::new(self.table, &self.model, part);
-                cell.refine(looks);
+                let edges: f32 = part.iter().map(|cluster| cluster.edges()).sum();
+                let mut cell = Cell::new(self.table, &self.model, part, care);
+                cell.refine();
                 if is_tear {
-                    cell.tear(sweep, looks, self.counter)?;
+                    cell.tear(sweep, self.counter)?;
                     self.count((WORK_OF_TEAR - 1.0) * f64::from(edges))?;
                 }
                 self.count(f64::from(edges))?;
@@ -147,9 +163,9 @@ impl<'a> Search<'a> {
         Ok(clusters)
     }
 
-    /// Edges become clusters only in the cell that is worked on, and four in ten of those are gone
+    /// Edges become clusters only in the cell that is worked on, and half of those are gone
     /// before the next, so that there is never a cluster for each edge.
-    fn first_round(&self) -> Result<Vec<Cluster>, Cancelled> {
+    fn first_round(&self) -> Result<Clusters, Cancelled> {
         let (table, model) = (self.table, &self.model);
         let places: Vec<_> =
             table.items.par_iter().map(|item| table.place_of_item(item, model)).collect();
@@ -157,23 +173,23 @@ impl<'a> Search<'a> {
         drop(places);
         let fused = ranges.into_par_iter().map(|range| {
             self.count(WORK_OF_ROUND * range.len() as f64)?;
-            let numbers = order[range].iter();
-            Ok(self.fuse(numbers.map(|&n| Cluster::of_item(table, n, model)).collect()))
+            let cluster = |&number: &u32| Box::new(Cluster::of_item(table, number, model));
+            Ok(self.fuse(order[range].iter().map(cluster).collect(), true))
         });
         Ok(fused.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
-    fn fuse(&self, part: Vec<Cluster>) -> Vec<Cluster> {
-        fuse_cell(self.table, &self.model, part, self.effort.looks)
+    fn fuse(&self, part: Clusters, is_first: bool) -> Clusters {
+        fuse_cell((self.table, &self.model), part, self.effort, is_first)
     }
 
     fn in_cells(
         &self,
-        clusters: Vec<Cluster>,
+        clusters: Clusters,
         cell: usize,
         round: usize,
-        work: impl Fn(Vec<Cluster>) -> Result<Vec<Cluster>, Cancelled> + Sync + Send,
-    ) -> Result<Vec<Cluster>, Cancelled> {
+        work: impl Fn(Clusters) -> Result<Clusters, Cancelled> + Sync + Send,
+    ) -> Result<Clusters, Cancelled> {
         let parts = in_parts(clusters, &self.model, cell, CUTS[round % CUTS.len()]);
         let parts: Vec<_> = parts.into_par_iter().map(work).collect::<Result<_, _>>()?;
         Ok(parts.into_iter().flatten().collect())
@@ -187,18 +203,25 @@ impl<'a> Search<'a> {
 
 /// One round in one cell.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share")]
-fn fuse_cell(table: &Table, model: &Model, part: Vec<Cluster>, looks: usize) -> Vec<Cluster> {
-    let least = (KEPT * part.len() as f64) as usize;
-    let mut cell = Cell::new(table, model, part);
-    cell.fuse_best(least, looks);
+fn fuse_cell(
+    (table, model): (&Table, &Model),
+    part: Clusters,
+    effort: Effort,
+    is_first: bool,
+) -> Clusters {
+    let care = effort.care();
+    let [kept_at_first, kept] = if care.is_hasty { KEPT_IN_HASTE } else { KEPT };
+    let least = (if is_first { kept_at_first } else { kept }) * part.len() as f64;
+    let mut cell = Cell::new(table, model, part, care);
+    cell.fuse_best(least as usize);
     cell.into_clusters()
 }
 
 /// Clusters by cell.
-fn in_parts(clusters: Vec<Cluster>, model: &Model, cell: usize, cut: f64) -> Vec<Vec<Cluster>> {
+fn in_parts(clusters: Clusters, model: &Model, cell: usize, cut: f64) -> Vec<Clusters> {
     let places: Vec<_> = clusters.par_iter().map(|cluster| cluster.place(model)).collect();
     let (order, ranges) = cells::split(&places, cell, cut);
-    let mut clusters: Vec<Option<Cluster>> = clusters.into_iter().map(Some).collect();
+    let mut clusters: Vec<Option<Box<Cluster>>> = clusters.into_iter().map(Some).collect();
     let mut part = |range: std::ops::Range<usize>| {
         order[range].iter().filter_map(|&number| clusters[number as usize].take()).collect()
     };

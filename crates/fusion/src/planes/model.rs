@@ -1,9 +1,11 @@
 //! The cost model and the view profile, as the search evaluates them.
 
 use glam::Vec3;
-use wide::f32x4;
 
 use crate::{CostModel, ViewProfile};
+
+/// 1.5 · 2²³: between this and its half, f32 holds whole numbers only.
+const ROUNDER: f32 = 12_582_912.0;
 
 /// What the search minimises. Distances in units of half the longest side of the mesh's box.
 #[derive(Clone, Debug)]
@@ -16,6 +18,7 @@ pub(crate) struct Model {
     patch_test: f32,
     accepted_patch: f32,
     block: f32,
+    block_reciprocal: f32,
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the search is content with f32")]
@@ -30,7 +33,13 @@ impl Model {
             patch_test: cost.patch_test as f32,
             accepted_patch: cost.accepted_patch as f32,
             block: cost.block.max(1) as f32,
+            block_reciprocal: 1.0 / cost.block.max(1) as f32,
         }
+    }
+
+    /// t_P.
+    pub(crate) fn patch_test(&self) -> f32 {
+        self.patch_test
     }
 
     /// Cost of a survivor beside that of its test: t_A + b ⌈edges / b⌉.
@@ -57,14 +66,16 @@ impl Model {
         self.patch_test + acceptance * self.survivor(edges)
     }
 
-    /// Roughly the same from α + t / d and numbers of edges, several at once.
+    /// Roughly the same from α + t / d and a whole number of edges.
     #[inline(always)]
-    pub(crate) fn rough_patch(&self, angle: f32x4, edges: f32x4) -> f32x4 {
-        let angle = angle.fast_min(f32x4::splat(1.5));
-        let acceptance = angle - angle * angle * angle * f32x4::splat(0.155);
-        let blocks = (edges / f32x4::splat(self.block) + f32x4::splat(0.499)).round();
-        let survivor = f32x4::splat(self.accepted_patch) + f32x4::splat(self.block) * blocks;
-        f32x4::splat(self.patch_test) + acceptance * survivor
+    pub(crate) fn rough_patch(&self, angle: f32, edges: f32) -> f32 {
+        let angle = if angle < 1.5 { angle } else { 1.5 };
+        let acceptance = angle - angle * angle * angle * 0.155;
+        // Half a block more than the edges before its last one, to the nearest whole number of blocks:
+        // that is rounded up. Adding and taking away so much rounds, on any number at once.
+        let blocks = (edges + 0.5 * (self.block - 1.0)) * self.block_reciprocal;
+        let tested = self.block * ((blocks + ROUNDER) - ROUNDER);
+        self.patch_test + acceptance * (self.accepted_patch + tested)
     }
 
     /// Where a set of planes lies, so that those that are cheap to cull together lie together:

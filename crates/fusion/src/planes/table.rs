@@ -35,20 +35,18 @@ pub(crate) struct Table {
 impl Table {
     /// `edges` all have a shape. The number of an edge is its place among them.
     pub(crate) fn new(frame: &Frame, edges: &[EdgeId]) -> Self {
-        let triangles = frame.mesh.triangles();
-        // No edge that has a shape names a triangle without a plane.
-        let plane = |&triangle: &[u32; 3]| {
-            let (normal, offset) = frame.plane(triangle).unwrap_or_default();
+        #[expect(clippy::cast_possible_truncation, reason = "three half-edges each have a u32")]
+        let turned_over = frame.mesh.triangles().len() as u32;
+        let plane = |triangle: u32| {
+            let (normal, offset) = (frame.normal(triangle), frame.offset(triangle));
             #[expect(clippy::cast_possible_truncation, reason = "it only guides the search")]
             Plane { normal: normal.as_vec3(), offset: offset as f32 }
         };
-        let mut planes: Vec<Plane> = triangles.par_iter().map(plane).collect();
+        let mut planes: Vec<Plane> = (0..turned_over).into_par_iter().map(plane).collect();
         if edges.par_iter().any(|&edge| frame.triangles(edge).1) {
             planes.extend_from_within(..);
-            planes[triangles.len()..].iter_mut().for_each(Plane::turn_over);
+            planes[turned_over as usize..].iter_mut().for_each(Plane::turn_over);
         }
-        #[expect(clippy::cast_possible_truncation, reason = "three half-edges each have a u32")]
-        let turned_over = triangles.len() as u32;
         let item = |&edge: &EdgeId| {
             let ([left, right], is_turned) = frame.triangles(edge);
             let right = if is_turned { turned_over + right } else { right };
@@ -74,6 +72,11 @@ impl Table {
 }
 
 impl Plane {
+    pub(crate) fn to_array(self) -> [f32; 4] {
+        let [x, y, z] = self.normal.to_array();
+        [x, y, z, self.offset]
+    }
+
     fn turn_over(&mut self) {
         (self.normal, self.offset) = (-self.normal, -self.offset);
     }

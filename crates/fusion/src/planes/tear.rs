@@ -1,43 +1,46 @@
 //! Clusters torn into edges, and fused anew.
 
-use super::cell::{Cell, LEAST_GAIN};
+use super::cell::{Care, Cell, LEAST_GAIN};
 use super::cluster::Cluster;
 use super::outlines::Outline;
 use crate::Cancelled;
 use crate::progress::Counter;
 
-/// How many clusters are torn apart together.
-const TORN: [usize; 4] = [2, 3, 4, 6];
+/// How many clusters are torn apart together. More are seldom fused to anything better, and take much
+/// longer.
+const TORN: [usize; 2] = [2, 3];
+
+/// What tearing may lose at first, in patch tests.
+const MOST_LOST: f32 = 0.25;
 
 /// Most edges that are torn apart at once: each is compared with all the others.
 const MOST_EDGES: usize = 1024;
 
 impl Cell<'_> {
     /// Tears a cluster and some that lie beside it into edges, and fuses these again. The better
-    /// one stays.
-    pub(crate) fn tear(
-        &mut self,
-        sweep: usize,
-        looks: usize,
-        counter: &Counter,
-    ) -> Result<(), Cancelled> {
+    /// one stays, or the new one if it is little worse.
+    pub(crate) fn tear(&mut self, sweep: usize, counter: &Counter) -> Result<(), Cancelled> {
         for number in 0..self.clusters.len() {
             counter.check()?;
-            self.tear_one(number, TORN[(sweep + number) % TORN.len()], looks);
+            // Every other time not with the nearest one.
+            let skipped = (sweep + number / TORN.len()) % 2;
+            self.tear_one(number, TORN[(sweep + number) % TORN.len()], skipped);
         }
         Ok(())
     }
 
-    fn tear_one(&mut self, number: usize, count: usize, looks: usize) {
+    fn tear_one(&mut self, number: usize, count: usize, skipped: usize) {
         let (table, model) = (self.table, self.model);
         let Some(cluster) = &self.clusters[number] else { return };
         self.outlines.gains(&Outline::of(cluster, model), model, &mut self.gains);
         self.gains.set(number, f32::NEG_INFINITY);
         let mut torn = vec![number];
-        while torn.len() < count {
+        for rank in 0..skipped + count - 1 {
             let Some((other, _)) = self.gains.most() else { break };
             self.gains.set(other, f32::NEG_INFINITY);
-            torn.push(other);
+            if rank >= skipped {
+                torn.push(other);
+            }
         }
         let before: f32 =
             torn.iter().filter_map(|&n| Some(self.clusters[n].as_ref()?.bound.cost)).sum();
@@ -47,14 +50,15 @@ impl Cell<'_> {
             return;
         }
         let items = torn.iter().filter_map(|&n| self.clusters[n].as_ref()).flat_map(|c| &c.items);
-        let pieces = items.map(|&item| Cluster::of_item(table, item, model)).collect();
-        let mut inner = Cell::new(table, model, pieces);
-        inner.fuse_best(1, looks);
-        inner.move_edges(looks);
-        inner.fuse_best(1, looks);
+        let pieces = items.map(|&item| Box::new(Cluster::of_item(table, item, model))).collect();
+        let care = Care { is_hasty: true, heat: 0.0, ..self.care };
+        let mut inner = Cell::new(table, model, pieces, care);
+        inner.fuse_best(1);
+        inner.move_edges();
+        inner.fuse_best(1);
         let clusters = inner.into_clusters();
         let after: f32 = clusters.iter().map(|cluster| cluster.bound.cost).sum();
-        if after > before - LEAST_GAIN {
+        if after > before - LEAST_GAIN + self.care.heat * MOST_LOST * model.patch_test() {
             return;
         }
         for &number in &torn {
