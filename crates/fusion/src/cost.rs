@@ -81,7 +81,7 @@ pub const VIEW_DISTANCES: usize = 4;
 pub struct ViewProfile {
     /// In units of half the longest side of the mesh's box, above 0.
     pub distances: [f64; VIEW_DISTANCES],
-    /// How often each is taken; they sum up to 1.
+    /// How often each is taken, 0 or more; they sum up to 1.
     pub weights: [f64; VIEW_DISTANCES],
 }
 

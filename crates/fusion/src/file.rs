@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::header::{CHECKSUM, Fields, HEADER, Header, MAGIC, VERSION};
 use crate::patch_set::little_endian;
 use crate::validate::Content;
-use crate::{InvalidPatches, Patch, PatchSet, Provenance, SuperPatch};
+use crate::{InvalidParams, InvalidPatches, Patch, PatchSet, Provenance, SuperPatch};
 
 /// Of every section.
 const ALIGNMENT: usize = 256;
@@ -67,6 +67,9 @@ pub enum PatchFileError {
         /// What makes no sense.
         field: &'static str,
     },
+    /// Parameters that no patches can be made with.
+    #[error("the file's header makes no sense: {0}")]
+    Params(#[from] InvalidParams),
     /// A code that stands for no [`EdgeClass`].
     #[error("the file's content makes no sense: an edge has an unknown class")]
     UnknownClass,

@@ -15,7 +15,8 @@ use crate::limits::keep_limits;
 use crate::planes::{Effort, group, grow_in_planes};
 use crate::progress::Counter;
 use crate::{
-    Cancelled, CostModel, FusionParams, Levels, Method, PatchSet, Progress, Provenance, mesh_hash,
+    Cancelled, CostModel, FuseError, FusionParams, Levels, Method, PatchSet, Progress, Provenance,
+    mesh_hash,
 };
 
 /// Share of the patches that are tested where there are two levels, as leaves are grown for it:
@@ -31,14 +32,16 @@ const TESTED_OF_TWO_LEVELS: f64 = 0.3;
 /// out of order; with [`ControlFlow::Break`] it ends the fusion within milliseconds.
 ///
 /// # Errors
-/// [`Cancelled`], only if `progress` asked for it.
+/// What [`FusionParams::check`] says, before anything is done; [`Cancelled`], only if `progress`
+/// asked for it.
 pub fn fuse(
     mesh: &Mesh,
     adjacency: &MeshAdjacency,
     filter: EdgeFilter,
     params: &FusionParams,
     progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
-) -> Result<PatchSet, Cancelled> {
+) -> Result<PatchSet, FuseError> {
+    params.check()?;
     let kept: Vec<EdgeId> = adjacency.edges(filter).collect();
     let counter = Counter::new(kept.len(), progress);
     counter.count(0)?;

@@ -3,6 +3,7 @@
 
 use drypoint_mesh::EdgeFilter;
 
+use crate::params::is_size;
 use crate::{
     BoundKind, CostModel, FusionParams, Levels, Method, PatchFileError, Provenance, SphereKind,
     ViewProfile,
@@ -59,11 +60,12 @@ impl Header {
         let fields = Fields(bytes);
         let params = FusionParams {
             bound: fields.bound().ok_or(nonsense("bound"))?,
-            cost: fields.cost()?,
-            views: fields.views()?,
+            cost: fields.cost(),
+            views: fields.views(),
             method: fields.method().ok_or(nonsense("method"))?,
             levels: fields.levels().ok_or(nonsense("levels"))?,
         };
+        params.check()?;
         let filter = match fields.u32(12) {
             0 => EdgeFilter::Convex,
             1 => EdgeFilter::All,
@@ -115,27 +117,21 @@ impl Fields<'_> {
         f64::from_bits(self.u64(at))
     }
 
-    fn cost(&self) -> Result<CostModel, PatchFileError> {
-        let cost = CostModel {
+    fn cost(&self) -> CostModel {
+        CostModel {
             patch_test: self.f64(48),
             accepted_patch: self.f64(56),
             block: self.u32(128),
             max_edges: self.u32(132),
             max_vertices: self.u32(136),
-        };
-        let is_sound = is_size(cost.patch_test) && is_size(cost.accepted_patch);
-        if is_sound { Ok(cost) } else { Err(nonsense("costs")) }
+        }
     }
 
-    fn views(&self) -> Result<ViewProfile, PatchFileError> {
-        let views = ViewProfile {
+    fn views(&self) -> ViewProfile {
+        ViewProfile {
             distances: std::array::from_fn(|i| self.f64(64 + 8 * i)),
             weights: std::array::from_fn(|i| self.f64(96 + 8 * i)),
-        };
-        // Infinitely far is as good a distance as any.
-        let is_sound = views.distances.iter().all(|&distance| distance >= 0.0)
-            && views.weights.iter().all(|&weight| is_size(weight));
-        if is_sound { Ok(views) } else { Err(nonsense("view distances")) }
+        }
     }
 
     fn bound(&self) -> Option<BoundKind> {
@@ -168,9 +164,4 @@ impl Fields<'_> {
 
 fn nonsense(field: &'static str) -> PatchFileError {
     PatchFileError::Header { field }
-}
-
-/// Neither NaN nor infinite nor negative.
-fn is_size(x: f64) -> bool {
-    x.is_finite() && x >= 0.0
 }

@@ -40,6 +40,7 @@ mod cluster;
 mod columns;
 mod cost;
 mod disk;
+mod error;
 mod extent;
 mod file;
 mod fuse;
@@ -58,6 +59,7 @@ mod screen;
 mod validate;
 
 pub use cost::{CostModel, VIEW_DISTANCES, ViewProfile};
+pub use error::{FuseError, InvalidParams};
 pub use file::{PatchFile, PatchFileError};
 pub use fuse::fuse;
 pub use params::{BoundKind, FusionParams, Levels, Method, SphereKind};

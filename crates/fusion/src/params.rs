@@ -1,6 +1,9 @@
 //! What is minimised, and how far the search goes.
 
-use crate::{CostModel, ViewProfile};
+use crate::{CostModel, InvalidParams, ViewProfile};
+
+/// How far from 1 the weights of a view profile may sum up to: what sums of f32 lose, and more.
+const WEIGHT_TOLERANCE: f64 = 1e-6;
 
 /// What bounds the planes of a patch. All become the same [`DoubleCone`](drypoint_bounds::DoubleCone)
 /// and cost the same at run time; they differ in how much they cull.
@@ -151,10 +154,47 @@ impl FusionParams {
             Method::Planes { .. } => self,
         }
     }
+
+    /// Whether something can be minimised with them. [`fuse`](crate::fuse) asks before it begins, and
+    /// so does whoever reads a patch file: what can be made can be loaded. Counts have no wrong
+    /// values: those that are too small count as the least that makes sense.
+    ///
+    /// # Errors
+    /// The first number that is out of its range.
+    pub fn check(&self) -> Result<(), InvalidParams> {
+        let CostModel { patch_test, accepted_patch, .. } = self.cost;
+        if !(is_size(patch_test) && patch_test > 0.0) {
+            return Err(InvalidParams::PatchTest { patch_test });
+        }
+        if !is_size(accepted_patch) {
+            return Err(InvalidParams::AcceptedPatch { accepted_patch });
+        }
+        let ViewProfile { distances, weights } = self.views;
+        for (index, distance) in distances.into_iter().enumerate() {
+            // Infinitely far is as good a distance as any. NaN is not above 0.
+            let is_distance = distance > 0.0;
+            if !is_distance {
+                return Err(InvalidParams::Distance { index, distance });
+            }
+        }
+        if let Some(index) = weights.iter().position(|&weight| !is_size(weight)) {
+            return Err(InvalidParams::Weight { index, weight: weights[index] });
+        }
+        let sum: f64 = weights.iter().sum();
+        if (sum - 1.0).abs() > WEIGHT_TOLERANCE {
+            return Err(InvalidParams::WeightSum { sum });
+        }
+        Ok(())
+    }
 }
 
 impl Default for FusionParams {
     fn default() -> Self {
         Self::DEFAULT
     }
+}
+
+/// Neither NaN nor infinite nor negative.
+pub(crate) fn is_size(x: f64) -> bool {
+    x.is_finite() && x >= 0.0
 }

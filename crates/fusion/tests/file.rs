@@ -203,17 +203,11 @@ fn errors_say_what_is_wrong() {
 #[test]
 fn nonsense_in_the_header_is_named() {
     let nan = f64::NAN.to_le_bytes();
-    let infinite = f64::INFINITY.to_le_bytes();
     let negative = (-1.0f64).to_le_bytes();
     let cases: &[(usize, &[u8], &str)] = &[
         (12, &[2], "edge filter"),
         (40, &nan, "unit"),
         (40, &negative, "unit"),
-        (48, &infinite, "costs"),
-        (56, &negative, "costs"),
-        (64, &nan, "view distances"),
-        (88, &negative, "view distances"),
-        (120, &infinite, "view distances"),
         (140, &[4], "bound"),
         (144, &[0], "levels"),
         (144, &[3], "levels"),
@@ -235,10 +229,57 @@ fn nonsense_in_the_header_is_named() {
         let found = PatchSet::from_bytes(&sealed(file));
         assert_eq!(found, Err(PatchFileError::Header { field: expected }), "{offset}");
     }
+}
+
+/// These, with the number that a file has at `offset` replaced.
+fn with_number(mut params: FusionParams, offset: usize, number: f64) -> FusionParams {
+    let field = match offset {
+        48 => &mut params.cost.patch_test,
+        56 => &mut params.cost.accepted_patch,
+        64..96 => &mut params.views.distances[(offset - 64) / 8],
+        _ => &mut params.views.weights[(offset - 96) / 8],
+    };
+    *field = number;
+    params
+}
+
+/// What [`fuse`] says of parameters, and the loader of a file with the same.
+#[track_caller]
+fn check_number(offset: usize, number: f64, expected: Result<(), &str>) {
+    let mesh = shapes::icosphere(80);
+    let params = with_number(FusionParams::FAST, offset, number);
+    let go_on = |_| ControlFlow::Continue(());
+    let made = fuse(&mesh, &MeshAdjacency::new(&mesh), EdgeFilter::All, &params, &go_on);
+    let mut bytes = set(&mesh, EdgeFilter::All, &FusionParams::FAST).to_bytes();
+    bytes[offset..offset + 8].copy_from_slice(&number.to_le_bytes());
+    let loaded = PatchSet::from_bytes(&sealed(bytes));
+    let expected = expected.map_err(str::to_owned);
+    assert_eq!(made.map(|_| ()).map_err(|error| error.to_string()), expected);
+    let of_file = |why| format!("the file's header makes no sense: {why}");
+    assert_eq!(loaded.map(|_| ()).map_err(|error| error.to_string()), expected.map_err(of_file));
+}
+
+#[test]
+fn senseless_parameters_are_refused_by_maker_and_loader() {
+    let patch_test = "a patch test must cost a finite number above 0, not";
+    for (number, name) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (0.0, "0"), (-0.5, "-0.5")] {
+        check_number(48, number, Err(&format!("{patch_test} {name}")));
+    }
+    let accepted_patch = "an accepted patch must cost a finite number from 0, not";
+    let weight = "the weight of view distance 3 must be a finite number from 0, not";
+    for (number, name) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (-0.5, "-0.5")] {
+        check_number(56, number, Err(&format!("{accepted_patch} {name}")));
+        check_number(120, number, Err(&format!("{weight} {name}")));
+    }
+    for (number, name) in [(f64::NAN, "NaN"), (0.0, "0"), (-3.0, "-3")] {
+        let expected = format!("view distance 1 must be above 0, not {name}");
+        check_number(72, number, Err(&expected));
+    }
+    check_number(120, 0.25, Err("the weights of view distances must sum up to 1, not 0.75"));
+    check_number(56, 0.0, Ok(()));
+    check_number(120, 0.5 + 1e-7, Ok(()));
     // Viewpoints may be infinitely far away.
-    let mut file = small_file();
-    file[64..72].copy_from_slice(&infinite);
-    assert!(PatchSet::from_bytes(&sealed(file)).is_ok());
+    check_number(64, f64::INFINITY, Ok(()));
 }
 
 #[test]
@@ -306,6 +347,36 @@ proptest! {
         let bytes = sealed(bytes);
         if let Ok(set) = PatchSet::from_bytes(&bytes) {
             use_it(&set, &bytes);
+        }
+    }
+}
+
+/// Numbers of all sizes, such as nobody should choose, and some that have none.
+fn number() -> impl Strategy<Value = f64> {
+    const EXTREMES: [f64; 6] = [f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, f64::NAN, 0.0, -1.0];
+    prop_oneof![4 => 0.1..100.0, 2 => prop::sample::select(&EXTREMES), 1 => any::<f64>()]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn what_can_be_made_can_be_loaded(
+        [patch_test, accepted_patch] in [number(), number()],
+        distances in [number(), number(), number(), number()],
+        weight in prop_oneof![0.0..=1.0, number()],
+        preset in prop::sample::select(&[FusionParams::DEFAULT, FusionParams::PAPER]),
+        levels in prop::sample::select(&[Levels::One, Levels::Two]),
+    ) {
+        let cost = CostModel { patch_test, accepted_patch, ..CostModel::MESH_SHADER };
+        let views = ViewProfile { distances, weights: [weight, 0.0, 1.0 - weight, 0.0] };
+        let params = FusionParams { cost, views, levels, ..preset };
+        let mesh = shapes::open_grid(60);
+        let go_on = |_| ControlFlow::Continue(());
+        let made = fuse(&mesh, &MeshAdjacency::new(&mesh), EdgeFilter::All, &params, &go_on);
+        prop_assert_eq!(made.is_ok(), params.check().is_ok());
+        if let Ok(set) = made {
+            prop_assert_eq!(PatchSet::from_bytes(&set.to_bytes()), Ok(set));
         }
     }
 }
