@@ -85,13 +85,7 @@ fn grow(
     let (fusible, mut without_shape): (Vec<EdgeId>, Vec<EdgeId>) =
         edges.into_par_iter().partition(|&edge| frame.has_shape(edge));
     counter.count(2 * without_shape.len())?;
-    let cost = match params.levels {
-        Levels::One => params.cost,
-        Levels::Two => {
-            let patch_test = TESTED_OF_TWO_LEVELS * params.cost.patch_test;
-            CostModel { patch_test, ..params.cost }
-        }
-    };
+    let cost = cost_below_groups(params);
     let mut grown = match params.method {
         Method::Greedy { sphere, cache_size, max_partition } => {
             let view_distance = params.views.mean_distance();
@@ -109,6 +103,15 @@ fn grow(
     Ok(grown)
 }
 
+/// What a patch costs: where there are groups, it is tested only if its own survives.
+fn cost_below_groups(params: &FusionParams) -> CostModel {
+    let tested = match params.levels {
+        Levels::One => 1.0,
+        Levels::Two => TESTED_OF_TWO_LEVELS,
+    };
+    CostModel { patch_test: tested * params.cost.patch_test, ..params.cost }
+}
+
 /// How hard to search in the space of planes: as the default where the method says nothing of it.
 fn effort(method: Method) -> Effort {
     let [cell, looks, sweeps, tears] = match method {
@@ -119,8 +122,8 @@ fn effort(method: Method) -> Effort {
     Effort { cell, looks, sweeps, tears }
 }
 
-/// Patches with their bounds; and the edges of those that are never culled, which are no patches:
-/// their tests would be wasted.
+/// Patches with their bounds; and the edges of those that, so bounded, cost no less than to test each
+/// edge: what is never culled, and often what was cut off.
 fn bound_each(
     frame: &Frame,
     patches: Vec<Vec<EdgeId>>,
@@ -134,8 +137,12 @@ fn bound_each(
             Ok(Bounded { bound: bound(frame, &edges, params.bound), edges })
         })
         .collect::<Result<_, _>>()?;
-    let (open, closed): (Vec<_>, Vec<_>) =
-        bounded.into_iter().partition(|patch| patch.bound == DoubleCone::ALWAYS);
+    let cost = cost_below_groups(params);
+    let is_worth_its_test = |Bounded { bound, edges }: &Bounded| {
+        let acceptance = params.views.acceptance(bound, frame.unit);
+        *bound != DoubleCone::ALWAYS && cost.patch(acceptance, edges.len()) < edges.len() as f64
+    };
+    let (closed, open): (Vec<_>, Vec<_>) = bounded.into_iter().partition(is_worth_its_test);
     Ok((closed, open.into_iter().flat_map(|patch| patch.edges).collect()))
 }
 

@@ -55,7 +55,8 @@ pub enum Levels {
 pub enum Method {
     /// The published method: in each part of space, the two patches that gain most are fused, as
     /// long as any gain (Tsiapkolis and Bénard, CGF 2024, Algorithm 1). It counts patch tests and
-    /// edges, and leaves the rest of the cost model out of account.
+    /// edges, and leaves the rest of the cost model out of account, but for patches that are in the
+    /// end no cheaper than their edges: those are given up.
     Greedy {
         /// The sphere that patches are measured by.
         sphere: SphereKind,
