@@ -2,9 +2,13 @@
 
 use drypoint_bounds::DoubleCone;
 use drypoint_mesh::{EdgeClass, EdgeId, Mesh, MeshAdjacency, Wing};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::{Patch, PatchSet, SuperPatch, mesh_hash};
+
+/// What the cross product of two unit vectors may be off by if both are differences of f32 positions,
+/// taken and made unit length in f64: 8 units of 2⁻⁵³.
+const CROSS_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// What is wrong with a [`PatchSet`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -185,6 +189,11 @@ impl PatchSet {
     /// Whether the normals of both faces are within α of the axis, and both planes cross the axis
     /// line between the apexes: then no plane passes through either cone of viewpoints. What is
     /// never culled holds everything.
+    ///
+    /// A sliver's normal is off by [`CROSS_ERROR`] over the sine of the corner that it is taken at. Of
+    /// α, [`SLACK`](drypoint_bounds::SLACK) is five times that for the thinnest face that is in a
+    /// patch. But about the middle of a single edge, t may be next to nothing: there, what the
+    /// normal is off by counts as far as the corner is away.
     fn is_within_bound(&self, place: usize, bound: &DoubleCone) -> bool {
         if *bound == DoubleCone::ALWAYS {
             return true;
@@ -193,13 +202,14 @@ impl PatchSet {
         let (center, axis) = (bound.center.as_dvec3(), bound.axis.as_dvec3());
         [wing.left_face(), wing.right_face()].into_iter().all(|face| {
             let [a, b, c] = face.map(|vertex| self.positions[vertex as usize].as_dvec3());
-            let normal = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
-            let Some(normal) = DVec3::try_normalize(normal) else { return false };
+            let cross = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
+            let Some(normal) = cross.try_normalize() else { return false };
+            let doubt = CROSS_ERROR / cross.length() * a.distance(center);
             let (cos, sin) = (normal.dot(axis), normal.cross(axis).length());
             let tan = f64::from(bound.tan_squared).sqrt();
             cos > 0.0
                 && sin <= tan * cos
-                && normal.dot(a - center).abs() <= f64::from(bound.apex_distance) * cos
+                && normal.dot(a - center).abs() <= f64::from(bound.apex_distance) * cos + doubt
         })
     }
 }

@@ -197,6 +197,26 @@ fn no_settings_lose_an_edge() {
     }
 }
 
+/// Two slivers on either side of an edge, which is a patch of its own: their planes pass through the
+/// middle of the bound, and what their normals are off by, times the edge, is all that there is.
+#[test]
+fn slivers_are_within_their_bounds() {
+    let cost = CostModel { patch_test: 0.1, ..CostModel::PAPER };
+    let params = FusionParams { cost, ..FusionParams::FAST };
+    let mut patches = 0;
+    for i in 1..2_000u16 {
+        let share = |step: f32| (step * f32::from(i)).fract();
+        let head = Vec3::new(1.0 + share(0.618), share(0.755), share(0.57));
+        // Beside the edge by what they are rounded by.
+        let positions = vec![Vec3::ZERO, head, 0.3 * head, 0.7 * head];
+        let mesh = Mesh::new(positions, vec![[0, 1, 2], [1, 0, 3]]).unwrap();
+        let set = fuse_silently(&mesh, EdgeFilter::All, &params);
+        assert_eq!(set.validate(), Ok(()), "{head}");
+        patches += set.patches().len();
+    }
+    assert!(patches > 100, "{patches}");
+}
+
 #[test]
 fn what_has_no_plane_is_always_tested() {
     let collinear = (0..9u8).map(|i| Vec3::splat(f32::from(i))).collect();
