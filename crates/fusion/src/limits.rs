@@ -40,8 +40,6 @@ pub(crate) fn keep_limits(
 
 #[cfg(test)]
 mod tests {
-    use std::time::{Duration, Instant};
-
     use drypoint_mesh::{EdgeFilter, MeshAdjacency, shapes};
 
     use super::*;
@@ -53,10 +51,7 @@ mod tests {
         let frame = Frame::new(&mesh, &adjacency).unwrap();
         let edges: Vec<EdgeId> = adjacency.edges(EdgeFilter::All).collect();
         let cost = CostModel { max_edges, max_vertices, ..CostModel::PAPER };
-        let start = Instant::now();
         let pieces = keep_limits(&frame, vec![edges.clone()], &cost);
-        // Generous, for a machine that is busy with other things.
-        assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
         assert_eq!(pieces.concat(), edges);
         let mut after = pieces.iter().skip(1).map(|piece| piece[0]);
         for piece in &pieces {
@@ -83,10 +78,5 @@ mod tests {
         assert_eq!(lengths(pieces_of_ball(20, u32::MAX, 2)), [1; 30]);
         assert!(pieces_of_ball(1_000, 126, 64).len() > 1_500 / 126);
         assert!(pieces_of_ball(1_000, 50, 7).len() > 1_500 / 15);
-    }
-
-    #[test]
-    fn cutting_takes_time_that_is_linear_in_the_edges() {
-        assert_eq!(pieces_of_ball(400_000, u32::MAX - 1, u32::MAX).len(), 1);
     }
 }

@@ -11,7 +11,7 @@ use crate::progress::Counter;
 const TORN: [usize; 2] = [2, 3];
 
 /// What tearing may lose at first, in patch tests.
-const MOST_LOST: f32 = 0.25;
+const MOST_LOST: f32 = 0.3;
 
 /// Most edges that are torn apart at once: each is compared with all the others.
 const MOST_EDGES: usize = 1024;
