@@ -54,7 +54,7 @@ pub fn fuse(
             open.extend(always_tested);
             let groups = match params.levels {
                 Levels::One => Vec::new(),
-                Levels::Two => bounded_groups(frame, &closed, params),
+                Levels::Two => bounded_groups(frame, &closed, params, &counter)?,
             };
             (closed, groups, open)
         }
@@ -147,13 +147,18 @@ fn bound_each(
 }
 
 /// Super-patches with their bounds, but for those that are never culled.
-fn bounded_groups(frame: &Frame, patches: &[Bounded], params: &FusionParams) -> Vec<Group> {
+fn bounded_groups(
+    frame: &Frame,
+    patches: &[Bounded],
+    params: &FusionParams,
+    counter: &Counter,
+) -> Result<Vec<Group>, Cancelled> {
     let lists: Vec<&[EdgeId]> = patches.iter().map(|patch| &patch.edges[..]).collect();
-    let groups = group(frame, &lists, &params.views, effort(params.method));
+    let groups = group(frame, &lists, &params.views, effort(params.method), counter)?;
     let bounded = groups.into_par_iter().map(|numbers| {
         let edges: Vec<EdgeId> =
             numbers.iter().flat_map(|&number| lists[number as usize]).copied().collect();
         Group { bound: bound(frame, &edges, params.bound), patches: numbers }
     });
-    bounded.filter(|group| group.bound != DoubleCone::ALWAYS).collect()
+    Ok(bounded.filter(|group| group.bound != DoubleCone::ALWAYS).collect())
 }

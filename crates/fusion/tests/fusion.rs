@@ -350,8 +350,14 @@ fn check_progress(mesh: &Mesh, adjacency: &MeshAdjacency, params: &FusionParams)
 fn a_break_ends_it_at_once() {
     let mesh = shapes::bumpy_sphere(60_000);
     let adjacency = MeshAdjacency::new(&mesh);
-    let params = FusionParams::PAPER.with_max_partition(None);
-    for last in [0, 1, 20] {
+    let whole = FusionParams::PAPER.with_max_partition(None);
+    for (last, params) in [
+        (0, whole),
+        (1, whole),
+        (20, whole),
+        (20, FusionParams::DEFAULT),
+        (200, FusionParams::BEST),
+    ] {
         let calls = AtomicUsize::new(0);
         let stopped = std::sync::OnceLock::new();
         let on_progress = |_| {

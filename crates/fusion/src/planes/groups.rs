@@ -1,13 +1,15 @@
 //! Patches of patches.
 
+use drypoint_mesh::EdgeId;
+use rayon::prelude::*;
+
 use super::cluster::{Cluster, Clusters};
 use super::model::Model;
 use super::table::Table;
 use super::{CUTS, Effort, STALLED, fuse_cell, in_parts};
 use crate::geometry::Frame;
-use crate::{CostModel, ViewProfile};
-use drypoint_mesh::EdgeId;
-use rayon::prelude::*;
+use crate::progress::Counter;
+use crate::{Cancelled, CostModel, ViewProfile};
 
 /// Groups patches by the expected cost of testing them, as edges are grouped: a group costs one
 /// patch test, and one for each of its patches where it survives. Lists of patches; those that are
@@ -19,7 +21,8 @@ pub(crate) fn group(
     patches: &[&[EdgeId]],
     views: &ViewProfile,
     effort: Effort,
-) -> Vec<Vec<u32>> {
+    counter: &Counter,
+) -> Result<Vec<Vec<u32>>, Cancelled> {
     // In patch tests.
     let cost = CostModel { patch_test: 1.0, ..CostModel::PAPER };
     let model = Model::new(cost, views);
@@ -42,7 +45,13 @@ pub(crate) fn group(
         let before = groups.len() as f64;
         groups = in_parts(groups, &model, effort.cell, CUTS[round % CUTS.len()])
             .into_par_iter()
-            .flat_map_iter(|part| fuse_cell((&table, &model), part, effort, false))
+            .map(|part| {
+                counter.check()?;
+                Ok(fuse_cell((&table, &model), part, effort, false))
+            })
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .flatten()
             .collect();
         if groups.len() as f64 >= STALLED * before {
             break;
@@ -51,5 +60,5 @@ pub(crate) fn group(
     groups.retain(|group| group.bound.cost < group.edges());
     let mut lists: Vec<Vec<u32>> = groups.into_iter().map(|group| group.items.to_vec()).collect();
     lists.iter_mut().for_each(|list| list.sort_unstable());
-    lists
+    Ok(lists)
 }
