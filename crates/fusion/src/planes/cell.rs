@@ -65,6 +65,11 @@ impl<'a> Cell<'a> {
         self.clusters.into_iter().flatten().collect()
     }
 
+    /// Of all clusters together.
+    pub(crate) fn cost(&self) -> f32 {
+        self.clusters.iter().flatten().map(|cluster| cluster.bound.cost).sum()
+    }
+
     pub(crate) fn replace(&mut self, number: usize, cluster: Box<Cluster>) {
         self.outlines.set(number, &Outline::of(&cluster, self.model));
         self.clusters[number] = Some(cluster);
