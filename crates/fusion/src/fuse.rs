@@ -12,7 +12,7 @@ use crate::geometry::Frame;
 use crate::greedy::{GreedyModel, Settings};
 use crate::grow::{Grown, Published, grow_greedily};
 use crate::limits::keep_limits;
-use crate::planes::{Effort, group, grow_in_planes};
+use crate::planes::{Effort, MOST_LOOKS, group, grow_in_planes};
 use crate::progress::Counter;
 use crate::{
     Cancelled, CostModel, FuseError, FusionParams, Levels, Method, PatchSet, Progress, Provenance,
@@ -112,11 +112,14 @@ fn cost_below_groups(params: &FusionParams) -> CostModel {
     CostModel { patch_test: tested * params.cost.patch_test, ..params.cost }
 }
 
-/// How hard to search in the space of planes: as the default where the method says nothing of it.
+/// How hard to search in the space of planes. Where the method says nothing of it, it is groups that
+/// are searched for, which takes little time.
 fn effort(method: Method) -> Effort {
     let [cell, looks, sweeps, tears] = match method {
-        Method::Planes { cell, looks, sweeps, tears } => [cell.max(8), looks.max(1), sweeps, tears],
-        Method::Greedy { .. } => [256, 2, 0, 0],
+        Method::Planes { cell, looks, sweeps, tears } => {
+            [cell.max(8), looks.clamp(1, MOST_LOOKS), sweeps, tears]
+        }
+        Method::Greedy { .. } => [512, 3, 0, 0],
     };
     let [cell, looks, sweeps, tears] = [cell, looks, sweeps, tears].map(|number| number as usize);
     Effort { cell, looks, sweeps, tears }
@@ -146,7 +149,7 @@ fn bound_each(
     Ok((closed, open.into_iter().flat_map(|patch| patch.edges).collect()))
 }
 
-/// Super-patches with their bounds, but for those that are never culled.
+/// Super-patches with their bounds, but for those that cost no less than to test each patch.
 fn bounded_groups(
     frame: &Frame,
     patches: &[Bounded],
@@ -156,9 +159,17 @@ fn bounded_groups(
     let lists: Vec<&[EdgeId]> = patches.iter().map(|patch| &patch.edges[..]).collect();
     let groups = group(frame, &lists, &params.views, effort(params.method), counter)?;
     let bounded = groups.into_par_iter().map(|numbers| {
+        counter.check()?;
         let edges: Vec<EdgeId> =
             numbers.iter().flat_map(|&number| lists[number as usize]).copied().collect();
-        Group { bound: bound(frame, &edges, params.bound), patches: numbers }
+        Ok(Group { bound: bound(frame, &edges, params.bound), patches: numbers })
     });
-    Ok(bounded.filter(|group| group.bound != DoubleCone::ALWAYS).collect())
+    let mut bounded: Vec<Group> = bounded.collect::<Result<_, _>>()?;
+    bounded.retain(|group| {
+        let acceptance = params.views.acceptance(&group.bound, frame.unit);
+        let cost = CostModel { patch_test: 1.0, ..CostModel::PAPER };
+        group.bound != DoubleCone::ALWAYS
+            && cost.patch(acceptance, group.patches.len()) < group.patches.len() as f64
+    });
+    Ok(bounded)
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Sine of the smallest corner angle at which a face's normal is trusted. Differences of f32 lose at
-/// most 2⁻⁵³ of their size in f64, so above this the normal is off by some 1e-8 radians, well within
+/// most 2⁻⁵³ of their size in f64, so above this the normal is off by less than 1e-7 radians, well within
 /// what the bounds are grown by. Edges of thinner faces are always tested, those of faces without area
 /// among them.
 const LEAST_SINE: f64 = 1e-8;

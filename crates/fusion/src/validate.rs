@@ -190,10 +190,10 @@ impl PatchSet {
     /// line between the apexes: then no plane passes through either cone of viewpoints. What is
     /// never culled holds everything.
     ///
-    /// A sliver's normal is off by [`CROSS_ERROR`] over the sine of the corner that it is taken at. Of
-    /// α, [`SLACK`](drypoint_bounds::SLACK) is five times that for the thinnest face that is in a
-    /// patch. But about the middle of a single edge, t may be next to nothing: there, what the
-    /// normal is off by counts as far as the corner is away.
+    /// A sliver's normal is off by [`CROSS_ERROR`] over the sine of the corner that it is taken at, so
+    /// that is the widest. Of α, [`SLACK`](drypoint_bounds::SLACK) is five times that for the thinnest
+    /// face that is in a patch. But about the middle of a single edge, t may be next to nothing:
+    /// there, what the normal is off by counts as far as the corner is away.
     fn is_within_bound(&self, place: usize, bound: &DoubleCone) -> bool {
         if *bound == DoubleCone::ALWAYS {
             return true;
@@ -202,7 +202,12 @@ impl PatchSet {
         let (center, axis) = (bound.center.as_dvec3(), bound.axis.as_dvec3());
         [wing.left_face(), wing.right_face()].into_iter().all(|face| {
             let [a, b, c] = face.map(|vertex| self.positions[vertex as usize].as_dvec3());
-            let cross = (b - a).normalize_or_zero().cross((c - a).normalize_or_zero());
+            let crosses = [[a, b, c], [b, c, a], [c, a, b]].map(|[a, b, c]| {
+                (a, (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()))
+            });
+            let (a, cross) = crosses.into_iter().fold(crosses[0], |x, y| {
+                if y.1.length_squared() > x.1.length_squared() { y } else { x }
+            });
             let Some(normal) = cross.try_normalize() else { return false };
             let doubt = CROSS_ERROR / cross.length() * a.distance(center);
             let (cos, sin) = (normal.dot(axis), normal.cross(axis).length());

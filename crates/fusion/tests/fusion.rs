@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
 
 use drypoint_fusion::{
     Cancelled, CostModel, FuseError, FusionParams, InvalidPatches, Levels, Method, PatchSet,
@@ -294,8 +293,15 @@ fn no_patch_is_in_vain() {
 #[test]
 fn any_number_of_threads_makes_the_same_bytes() {
     let mesh = shapes::bumpy_sphere(4_000);
-    for sphere in [SphereKind::Mean, SphereKind::Reduced] {
-        let params = greedy(sphere, 50, Some(256));
+    let two_levels = FusionParams { levels: Levels::Two, ..FusionParams::DEFAULT };
+    let few_tears = Method::Planes { cell: 32, looks: 2, sweeps: 1, tears: 3 };
+    for params in [
+        greedy(SphereKind::Mean, 50, Some(256)),
+        greedy(SphereKind::Reduced, 50, Some(256)),
+        FusionParams::FAST,
+        two_levels,
+        FusionParams { method: few_tears, ..FusionParams::BEST },
+    ] {
         let with_threads = |count| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
             pool.install(|| fuse_silently(&mesh, EdgeFilter::Convex, &params).to_bytes())
@@ -333,10 +339,12 @@ fn progress_comes_to_an_end() {
 #[track_caller]
 fn check_progress(mesh: &Mesh, adjacency: &MeshAdjacency, params: &FusionParams) {
     let (calls, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let before_last = AtomicUsize::new(0);
     let edges = adjacency.edges(EdgeFilter::Convex).count();
     let on_progress = |progress: Progress| {
         calls.fetch_add(1, Ordering::Relaxed);
-        most.fetch_max(progress.edges_done, Ordering::Relaxed);
+        let before = most.fetch_max(progress.edges_done, Ordering::Relaxed);
+        before_last.fetch_max(before, Ordering::Relaxed);
         assert!(progress.edges == edges && progress.edges_done <= edges);
         assert!((0.0..=1.0).contains(&progress.fraction()));
         ControlFlow::Continue(())
@@ -344,6 +352,8 @@ fn check_progress(mesh: &Mesh, adjacency: &MeshAdjacency, params: &FusionParams)
     fuse(mesh, adjacency, EdgeFilter::Convex, params, &on_progress).unwrap();
     assert_eq!(most.into_inner(), edges);
     assert!(calls.into_inner() > 5);
+    // The last call but one: what is left to the end is little.
+    assert!(before_last.into_inner() * 10 > edges * 8);
 }
 
 #[test]
@@ -359,18 +369,16 @@ fn a_break_ends_it_at_once() {
         (200, FusionParams::BEST),
     ] {
         let calls = AtomicUsize::new(0);
-        let stopped = std::sync::OnceLock::new();
         let on_progress = |_| {
             if calls.fetch_add(1, Ordering::Relaxed) < last {
                 return ControlFlow::Continue(());
             }
-            stopped.get_or_init(Instant::now);
             ControlFlow::Break(())
         };
         let result = fuse(&mesh, &adjacency, EdgeFilter::All, &params, &on_progress);
         assert_eq!(result, Err(FuseError::Cancelled(Cancelled)));
-        // Generous, for a machine that is busy with other things.
-        assert!(stopped.get().unwrap().elapsed() < Duration::from_secs(2));
+        // Others may be about to call when one is told to stop.
+        assert!(calls.into_inner() <= last + rayon::current_num_threads() + 1);
     }
 }
 
@@ -383,4 +391,26 @@ fn another_mesh_is_noticed() {
         set.validate_against(&other, &MeshAdjacency::new(&other)),
         Err(InvalidPatches::AnotherMesh)
     );
+}
+
+/// Needles that share a tip at which no normal can be trusted.
+#[test]
+fn needles_are_bounded_as_they_are_checked() {
+    for inner in [1e-7f32, 1e-9, 1e-11, 1e-20] {
+        let ring = |radius: f32| {
+            (0..40u8).map(move |i| {
+                let (sin, cos) = (f32::from(i) * std::f32::consts::TAU / 40.0).sin_cos();
+                Vec3::new(radius * cos, radius * sin, 0.1 * radius * cos * cos)
+            })
+        };
+        let triangles = (0..40u32).flat_map(|i| {
+            let j = (i + 1) % 40;
+            [[i, 40 + i, 40 + j], [i, 40 + j, j]]
+        });
+        let mesh = Mesh::new(ring(inner).chain(ring(1.0)).collect(), triangles.collect()).unwrap();
+        for params in [FusionParams::FAST, FusionParams::DEFAULT, FusionParams::PAPER] {
+            let set = fuse_silently(&mesh, EdgeFilter::All, &params);
+            assert_eq!(set.validate(), Ok(()), "{inner}");
+        }
+    }
 }

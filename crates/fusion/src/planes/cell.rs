@@ -1,4 +1,4 @@
-//! A few dozen clusters that lie close together, and how they become fewer.
+//! Some hundred clusters that lie close together, and how they become fewer.
 
 use super::cluster::{Bound, Cluster, Clusters};
 use super::model::Model;
@@ -9,7 +9,7 @@ use super::table::Table;
 pub(crate) const LEAST_GAIN: f32 = 1e-3;
 
 /// Most partners of a cluster that are looked at closely.
-pub(crate) const MOST_LOOKS: usize = 4;
+pub(crate) const MOST_LOOKS: u32 = 4;
 
 /// Clusters that are worked on together.
 pub(crate) struct Cell<'a> {
@@ -27,9 +27,9 @@ pub(crate) struct Care {
     /// How many likely partners are looked at closely, 1 ..= [`MOST_LOOKS`].
     pub(crate) looks: usize,
     /// Whether these are looked at only when it is a cluster's turn by what it would gain at a glance,
-    /// and not all before the first are fused: some 40 % of the time, for patches that cost 1 % more.
+    /// and not all before the first are fused: quicker, for patches that cost a little more.
     pub(crate) is_hasty: bool,
-    /// How much may be lost by a change, as a share of what may be at most: from 1 down to 0.
+    /// How much may be lost by a change, as a share of what may be at most: below 1, and 0 at last.
     pub(crate) heat: f32,
 }
 
@@ -46,7 +46,7 @@ enum Partner {
     /// Nothing gains.
     Nobody,
     /// The first few of these are the likeliest, at a glance.
-    Likely([Candidate; MOST_LOOKS], usize),
+    Likely([Candidate; MOST_LOOKS as usize], usize),
     /// The best of them, and the bound of both.
     Sure(Candidate, Bound),
 }
@@ -138,9 +138,9 @@ impl<'a> Cell<'a> {
         let outline = Outline::of(cluster, self.model);
         self.outlines.gains(&outline, self.model, &mut self.gains);
         self.gains.set(number, f32::NEG_INFINITY);
-        let mut likely = [Candidate::default(); MOST_LOOKS];
+        let mut likely = [Candidate::default(); MOST_LOOKS as usize];
         let (mut count, mut most) = (0, f32::NEG_INFINITY);
-        while count < self.care.looks.min(MOST_LOOKS) {
+        while count < self.care.looks {
             let Some((other, gain)) = self.gains.most() else { break };
             self.gains.set(other, f32::NEG_INFINITY);
             likely[count] = Candidate { number: other, age: ages[other] };

@@ -4,8 +4,8 @@
 //! patch if one line of sight along their faces goes for both. So clusters are compared by where
 //! their planes lie ([`Model::place`]).
 //!
-//! 1. That space, of four dimensions, is cut into cells of a few dozen clusters ([`cells`]). In each
-//!    cell, those two are fused that gain most, again and again, until some six tenths are left
+//! 1. That space, of four dimensions, is cut into cells of some hundred clusters ([`cells`]). In each
+//!    cell, those two are fused that gain most, again and again, until a certain share is left
 //!    ([`Cell::fuse_best`]). Then it is cut anew, elsewhere, until nothing gains.
 //! 2. In sweeps, edges move to where they cost less, clusters whose edges cost less elsewhere are
 //!    given up, and what gains is fused ([`Cell::refine`]).
@@ -34,6 +34,7 @@ mod sums;
 mod table;
 mod tear;
 
+pub(crate) use cell::MOST_LOOKS;
 pub(crate) use groups::group;
 
 use drypoint_mesh::EdgeId;
@@ -86,6 +87,11 @@ impl Effort {
     fn care(self) -> Care {
         Care { looks: self.looks, is_hasty: self.looks == 1, heat: 0.0 }
     }
+
+    /// Shares of the clusters that a cell keeps, in the first round and in others.
+    fn kept(self) -> [f64; 2] {
+        if self.care().is_hasty { KEPT_IN_HASTE } else { KEPT }
+    }
 }
 
 /// Groups `edges`, all of which have a shape.
@@ -123,7 +129,8 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(table: &'a Table, model: Model, effort: Effort, counter: &'a Counter<'a>) -> Self {
-        let rounds = WORK_OF_ROUND / (1.0 - KEPT[1]);
+        let [kept_at_first, kept] = effort.kept();
+        let rounds = WORK_OF_ROUND * (1.0 + kept_at_first / (1.0 - kept));
         let work = rounds + effort.sweeps as f64 + WORK_OF_TEAR * effort.tears as f64;
         Self { table, model, effort, counter, step: 2.0 / work }
     }
@@ -210,7 +217,7 @@ fn fuse_cell(
     is_first: bool,
 ) -> Clusters {
     let care = effort.care();
-    let [kept_at_first, kept] = if care.is_hasty { KEPT_IN_HASTE } else { KEPT };
+    let [kept_at_first, kept] = effort.kept();
     let least = (if is_first { kept_at_first } else { kept }) * part.len() as f64;
     let mut cell = Cell::new(table, model, part, care);
     cell.fuse_best(least as usize);

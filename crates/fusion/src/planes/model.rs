@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{CostModel, ViewProfile};
 
-/// 1.5 · 2²³: between this and its half, f32 holds whole numbers only.
+/// 1.5 · 2²³, in the middle of where f32 holds whole numbers and nothing between them.
 const ROUNDER: f32 = 12_582_912.0;
 
 /// What the search minimises. Distances in units of half the longest side of the mesh's box.

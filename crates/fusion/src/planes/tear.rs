@@ -13,10 +13,6 @@ const TORN: [usize; 2] = [2, 3];
 /// What tearing may lose at first, in patch tests.
 const MOST_LOST: f32 = 0.3;
 
-/// What the pieces, fused anew, may cost more before edges are moved, in patch tests: more than that
-/// is seldom made up for.
-const HOPELESS: f32 = 0.3;
-
 /// Most edges that are torn apart at once: each is compared with all the others.
 const MOST_EDGES: usize = 1024;
 
@@ -58,13 +54,12 @@ impl Cell<'_> {
         let care = Care { is_hasty: true, heat: 0.0, ..self.care };
         let mut inner = Cell::new(table, model, pieces, care);
         inner.fuse_best(1);
-        if inner.cost() > before + HOPELESS * model.patch_test() {
-            return;
-        }
         inner.move_edges();
         inner.fuse_best(1);
         let after = inner.cost();
-        if after > before - LEAST_GAIN + self.care.heat * MOST_LOST * model.patch_test() {
+        let most = before - LEAST_GAIN + self.care.heat * MOST_LOST * model.patch_test();
+        let is_good_enough = after <= most;
+        if !is_good_enough {
             return;
         }
         for &number in &torn {
