@@ -105,8 +105,8 @@ pub(super) const BOUNDS: &[Mutant] = &[
     mutant(
         "`NormalCone::minimal`: a support too few",
         "crates/bounds/src/cap.rs",
-        "            consider(a + b, &[a, b]);",
-        "            consider(a, &[a, b]);",
+        "        consider(a + last, [last, a, a], 2);",
+        "        consider(a, [last, a, a], 2);",
     ),
     mutant(
         "`Sphere::reduced`: radius × 0.97",
@@ -183,8 +183,8 @@ pub(super) const BOUNDS: &[Mutant] = &[
     mutant(
         "`DoubleCone::tight`: the mean cone",
         TIGHT,
-        "NormalCone::minimal(planes",
-        "NormalCone::mean(planes",
+        "Self::about(cap.axis,",
+        "Self::about(NormalCone::mean(planes.clone().map(|plane| plane.normal)).axis,",
     ),
     mutant(
         "`DoubleCone::tight`: about the mean of the points",
