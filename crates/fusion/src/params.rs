@@ -111,7 +111,7 @@ impl FusionParams {
         levels: Levels::One,
     };
 
-    /// For building once and viewing often: some 20 µs for each edge, for views that cost 6 to 9 %
+    /// For building once and viewing often: some 25 µs for each edge, for views that cost 7 to 10 %
     /// less than with [`FusionParams::FAST`].
     pub const DEFAULT: Self =
         Self { method: Method::Planes { cell: 512, looks: 3, sweeps: 7, tears: 0 }, ..Self::FAST };
