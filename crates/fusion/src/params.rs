@@ -118,7 +118,7 @@ impl FusionParams {
 
     /// For an asset that is shipped: some 300 µs for each edge, for the last 1 or 2 %.
     pub const BEST: Self =
-        Self { method: Method::Planes { cell: 256, looks: 2, sweeps: 2, tears: 28 }, ..Self::FAST };
+        Self { method: Method::Planes { cell: 256, looks: 2, sweeps: 2, tears: 30 }, ..Self::FAST };
 
     /// The published method: Tsiapkolis and Bénard, CGF 2024, with Reduced spheres. Some 100 µs for
     /// each edge.
