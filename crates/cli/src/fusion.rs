@@ -13,7 +13,8 @@ pub(crate) struct FusionArgs {
     /// How long to look for good patches [default: default]
     #[arg(long, value_enum)]
     pub(crate) preset: Option<Preset>,
-    /// For whom: far, near, paper, or one distance in units of half the model's longest side
+    /// For whom: far (from 5 to 75), near (from 1 to 10), paper (10) or any one distance, between
+    /// viewpoint and patch, in units of half the model's longest side
     /// [default: far; paper with --preset paper]
     #[arg(long, value_name = "PROFILE", value_parser = profile, allow_hyphen_values = true)]
     pub(crate) profile: Option<Profile>,

@@ -1,6 +1,6 @@
 //! Writing files whole or not at all, and stopping cleanly.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -21,7 +21,9 @@ pub(crate) fn stop_cleanly_on_ctrl_c() -> Result<(), String> {
             // The program ends either way, and there is nobody left to tell.
             let _ = std::fs::remove_file(path);
         }
-        eprintln!("drypoint: interrupted");
+        // A progress bar may stand in this line of a terminal.
+        let clear = if io::stderr().is_terminal() { "\r\x1b[2K" } else { "" };
+        eprintln!("{clear}drypoint: interrupted");
         std::process::exit(INTERRUPTED);
     };
     ctrlc::set_handler(stop).map_err(|error| format!("cannot watch for Ctrl-C: {error}"))

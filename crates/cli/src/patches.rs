@@ -65,8 +65,13 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
     output.write(&patches.to_bytes())?;
     if !args.json {
         tell(&format!(
-            "{name}: {} edges in {} patches, {:.1}° wide on average, {:.1} s",
-            built.edges, built.patches, built.mean_half_angle, built.build_seconds
+            "{name}: {} edges in {} patches, half-angle {:.1}° on average, a view costs {:.0} edge \
+             tests, {:.1} s",
+            built.edges,
+            built.patches,
+            built.mean_half_angle,
+            built.expected_cost,
+            built.build_seconds
         ));
     }
     Ok(())

@@ -104,12 +104,19 @@ pub(crate) fn grow_in_planes(
 ) -> Result<Grown, Cancelled> {
     let table = Table::new(frame, edges);
     let search = Search::new(&table, Model::new(cost, views), effort, counter);
+    let lists: Vec<(bool, Vec<EdgeId>)> = search
+        .run()?
+        .into_par_iter()
+        .map(|cluster| {
+            let mut list: Vec<EdgeId> = cluster.items.iter().map(|&n| edges[n as usize]).collect();
+            list.sort_unstable();
+            // Otherwise it is no dearer to test all its edges from everywhere.
+            (cluster.bound.cost < cluster.edges(), list)
+        })
+        .collect();
     let mut grown = Grown::default();
-    for cluster in search.run()? {
-        let mut list: Vec<EdgeId> = cluster.items.iter().map(|&n| edges[n as usize]).collect();
-        list.sort_unstable();
-        // Otherwise it is no dearer to test all its edges from everywhere.
-        if cluster.bound.cost < cluster.edges() {
+    for (is_patch, mut list) in lists {
+        if is_patch {
             grown.patches.push(list);
         } else {
             grown.always_tested.append(&mut list);
