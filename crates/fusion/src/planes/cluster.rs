@@ -77,7 +77,7 @@ pub(crate) struct Cluster {
     pub(crate) bound: Bound,
 }
 
-/// Some clusters, each in a box: they are moved from cell to cell, and are some 500 bytes long.
+/// Some clusters, each in a box: and not in place, as they are moved from cell to cell.
 pub(crate) type Clusters = Vec<Box<Cluster>>;
 
 impl Cluster {
