@@ -51,7 +51,7 @@ impl Bound {
         let acceptance = if cap.chord_squared > MAX_CHORD_SQUARED {
             1.0
         } else {
-            model.acceptance(cap.chord_squared, 0.0)
+            Model::least_acceptance(cap.chord_squared)
         };
         let cap = cap.reaching(cap.chord_squared.min(MAX_CHORD_SQUARED));
         Self {
@@ -142,7 +142,7 @@ impl Cluster {
         let edges = self.sums.edges() + other.sums.edges();
         // No union has a narrower cap.
         let chord_squared = cap.map_or(4.0, |cap| cap.chord_squared);
-        let least = model.patch(model.acceptance(chord_squared, 0.0), edges);
+        let least = model.patch(Model::least_acceptance(chord_squared), edges);
         if least >= most {
             return Bound { cost: f32::INFINITY, ..self.bound };
         }

@@ -1,6 +1,7 @@
 //! The cost model and the view profile, as the search evaluates them.
 
 use glam::Vec3;
+use wide::{CmpLt, f32x4};
 
 use crate::{CostModel, ViewProfile};
 
@@ -11,8 +12,10 @@ const ROUNDER: f32 = 12_582_912.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub(crate) cost: CostModel,
-    /// Reciprocals of the distances that count, and how much they do.
-    views: Vec<(f32, f32)>,
+    /// Reciprocals of the distances; 0 for those that do not count.
+    nearnesses: f32x4,
+    /// How much each counts.
+    weights: f32x4,
     /// Reciprocal of the one distance that comes nearest.
     pub(crate) nearness: f32,
     patch_test: f32,
@@ -24,11 +27,13 @@ pub(crate) struct Model {
 #[expect(clippy::cast_possible_truncation, reason = "the search is content with f32")]
 impl Model {
     pub(crate) fn new(cost: CostModel, views: &ViewProfile) -> Self {
-        let each = views.distances.iter().zip(&views.weights);
-        let counting = each.filter(|&(_, &weight)| weight > 0.0);
+        let nearness = |view: usize| {
+            if views.weights[view] > 0.0 { (1.0 / views.distances[view]) as f32 } else { 0.0 }
+        };
         Self {
             cost,
-            views: counting.map(|(d, w)| ((1.0 / d) as f32, *w as f32)).collect(),
+            nearnesses: f32x4::from(std::array::from_fn(nearness)),
+            weights: f32x4::from(views.weights.map(|weight| weight as f32)),
             nearness: (1.0 / views.mean_distance()) as f32,
             patch_test: cost.patch_test as f32,
             accepted_patch: cost.accepted_patch as f32,
@@ -49,17 +54,17 @@ impl Model {
 
     /// Probability H that planes survive which a cap and a distance t between center and apex bound.
     pub(crate) fn acceptance(&self, chord_squared: f32, apex_distance: f32) -> f32 {
-        let cos = 1.0 - 0.5 * chord_squared;
-        let sin = (chord_squared * (1.0 - 0.25 * chord_squared)).max(0.0).sqrt();
-        let at = |&(nearness, weight): &(f32, f32)| {
-            let sin_beta = apex_distance * cos * nearness;
-            if sin_beta < cos {
-                weight * (sin * (1.0 - sin_beta * sin_beta).sqrt() + cos * sin_beta)
-            } else {
-                weight
-            }
-        };
-        self.views.iter().map(at).sum()
+        let cos = f32x4::splat(1.0 - 0.5 * chord_squared);
+        let sin = f32x4::splat(sin(chord_squared));
+        let sin_beta = f32x4::splat(apex_distance) * cos * self.nearnesses;
+        // Beyond, a root of something negative may be NaN, and is not taken.
+        let at = sin * (f32x4::ONE - sin_beta * sin_beta).sqrt() + cos * sin_beta;
+        (self.weights * sin_beta.cmp_lt(cos).blend(at, f32x4::ONE)).reduce_add()
+    }
+
+    /// No more than the same, whatever the distance: what it is if t is 0.
+    pub(crate) fn least_acceptance(chord_squared: f32) -> f32 {
+        sin(chord_squared)
     }
 
     pub(crate) fn patch(&self, acceptance: f32, edges: f32) -> f32 {
@@ -84,4 +89,9 @@ impl Model {
     pub(crate) fn place(&self, axis: Vec3, center: Vec3) -> [f32; 4] {
         [axis.x, axis.y, axis.z, self.nearness * axis.dot(center)]
     }
+}
+
+/// Of the angle α whose chord that is.
+fn sin(chord_squared: f32) -> f32 {
+    (chord_squared * (1.0 - 0.25 * chord_squared)).max(0.0).sqrt()
 }
