@@ -111,7 +111,7 @@ pub enum PatchFileError {
 /// | 136 | most vertices in a patch, u32 |
 /// | 140 | bound, u32: 0 mean, 1 reduced, 2 minimal, 3 tight |
 /// | 144 | levels, u32: 1 or 2 |
-/// | 148 | method, five u32: 0, sphere (0 mean, 1 reduced), cache size, whether partitions are limited (0 or 1), most edges in a partition; or 1, cell, sweeps, 0, 0 |
+/// | 148 | method, five u32: 0, sphere (0 mean, 1 reduced), cache size, whether partitions are limited (0 or 1), most edges in a partition; or 1, cell, looks, sweeps, tears |
 /// | 168 | numbers of super-patches, patches, edges and vertices, u32 each |
 /// | 184 | zeros |
 ///

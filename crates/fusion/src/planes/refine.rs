@@ -12,7 +12,7 @@ const MOST_EDGES: usize = 512;
 const MOST_LOST: f32 = 0.0075;
 
 /// How far a rough gain may be from a true one, as a share of what a move releases.
-const ROUGHNESS: f32 = 0.5;
+const ROUGHNESS: f32 = 1.5;
 
 /// What an edge of a cluster that is given up costs elsewhere at least, very likely, as a share of what
 /// it cost there. With 0, half the time goes into clusters that stay.
