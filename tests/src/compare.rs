@@ -1,6 +1,8 @@
 //! Every extractor against the definition.
 
-use drypoint_cpu::{BruteForce, extract_all_wings, extract_patches};
+use drypoint_cpu::{
+    BruteForce, Contours, Extractor, Instructions, Statistics, extract_all_wings, extract_patches,
+};
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
 use rayon::prelude::*;
@@ -85,6 +87,16 @@ impl Expected {
     /// Where they do not.
     pub fn compare(&self, patches: &PatchSet) -> Result<Agreement, Box<Disagreement>> {
         assert_eq!(patches.edge_filter(), self.filter, "made with another filter");
+        let extractors: Vec<(&str, Extractor<'_>)> =
+            [("portable kernels", Instructions::Portable), ("AVX2 kernels", Instructions::Avx2)]
+                .into_iter()
+                .filter_map(|(name, set)| Some((name, Extractor::with(patches, set)?)))
+                .collect();
+        let mut ends =
+            vec![[0; 2]; patches.edge_ids().iter().map(|e| e.index() + 1).max().unwrap_or(0)];
+        for (edge, wing) in patches.edge_ids().iter().zip(patches.wings()) {
+            ends[edge.index()] = wing.ends();
+        }
         let look = |(index, (viewpoint, expected)): (usize, &(Viewpoint, Vec<EdgeId>))| {
             let (viewpoint, mut found) = (*viewpoint, Vec::new());
             if index.is_multiple_of(ALL_WINGS_EVERY) {
@@ -93,6 +105,9 @@ impl Expected {
             }
             let statistics = extract_patches(patches, viewpoint, &mut found);
             check("patches", viewpoint, expected, &sorted(&found))?;
+            for (name, extractor) in &extractors {
+                compare_kernels(name, extractor, viewpoint, (&ends, &found, statistics))?;
+            }
             Ok(Agreement {
                 viewpoints: 1,
                 contour_edges: expected.len(),
@@ -103,6 +118,24 @@ impl Expected {
         let views = self.views.par_iter().enumerate().map(look);
         views.try_reduce(Agreement::default, |a, b| Ok(a + b))
     }
+}
+
+/// Kernels find the same edges as patches tested one by one, in the same order, after as many tests.
+fn compare_kernels(
+    name: &'static str,
+    extractor: &Extractor<'_>,
+    viewpoint: Viewpoint,
+    (ends, expected, statistics): (&[[u32; 2]], &[EdgeId], Statistics),
+) -> Result<(), Box<Disagreement>> {
+    let (mut edges, mut pairs) = (Contours::default(), Contours::default());
+    assert_eq!(extractor.edges(viewpoint, &mut edges), statistics, "{name} from {viewpoint:?}");
+    check(name, viewpoint, &sorted(expected), &sorted(&edges))?;
+    assert!(expected == &*edges, "order of {name} from {viewpoint:?}");
+    extractor.vertex_pairs(viewpoint, &mut pairs);
+    let ends = expected.iter().map(|edge| &ends[edge.index()]);
+    assert!(pairs.iter().eq(ends), "vertex pairs of {name} from {viewpoint:?}");
+    extractor.all_edges(viewpoint, &mut edges);
+    check(name, viewpoint, &sorted(expected), &sorted(&edges))
 }
 
 /// Looks at `mesh` from every viewpoint with every extractor.

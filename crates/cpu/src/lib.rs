@@ -1,12 +1,18 @@
 //! Contour extraction on the CPU.
 //!
-//! Both extractors give the edges of the definition, [`drypoint_mesh::contour_edges`], with exact
-//! predicates throughout: [`BruteForce`] tests every edge, [`extract_patches`] only those of the
-//! patches that may hold a contour edge. Output goes to memory that the caller keeps, and its order
-//! is fixed.
+//! Every extractor gives the edges of the definition, [`drypoint_mesh::contour_edges`], whatever the
+//! processor. Output goes to memory that the caller keeps, and its order is fixed.
+//!
+//! | | looks at | for |
+//! |---|---|---|
+//! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the widest instructions | every frame |
+//! | [`Extractor::all_edges`] | every edge, with the same instructions | measuring what patches gain |
+//! | [`extract_patches`] | the same patches and edges, with exact predicates throughout | few views, where laying out does not pay |
+//! | [`BruteForce`] | every face, then every edge, with exact predicates | a mesh without patches |
+//! | [`extract_all_wings`] | every edge, with exact predicates | a patch file without its mesh |
 //!
 //! ```
-//! use drypoint_cpu::{BruteForce, extract_patches};
+//! use drypoint_cpu::{BruteForce, Contours, Extractor};
 //! use drypoint_fusion::{FusionParams, fuse};
 //! use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
 //! use glam::DVec3;
@@ -18,8 +24,11 @@
 //! let patches = fuse(&mesh, &adjacency, EdgeFilter::All, &FusionParams::PAPER, &go_on).unwrap();
 //!
 //! let viewpoint = Viewpoint::at(DVec3::new(0.0, 2.0, 9.0));
-//! let (mut by_patches, mut by_force) = (Vec::new(), Vec::new());
-//! let statistics = extract_patches(&patches, viewpoint, &mut by_patches);
+//! let extractor = Extractor::new(&patches);
+//! let mut contours = Contours::default();
+//! let statistics = extractor.edges(viewpoint, &mut contours);
+//!
+//! let (mut by_patches, mut by_force) = (contours.to_vec(), Vec::new());
 //! BruteForce::new(&mesh, &adjacency, EdgeFilter::All).extract(viewpoint, &mut by_force);
 //!
 //! by_patches.sort_unstable();
@@ -27,10 +36,16 @@
 //! assert!(statistics.edges_tested < patches.wings().len() / 2, "most patches are culled");
 //! ```
 
+mod blocks;
 mod brute_force;
+mod extractor;
+mod patch_blocks;
 mod patches;
+mod simd;
 mod statistics;
 
 pub use brute_force::BruteForce;
+pub use extractor::{Contours, Extractor};
 pub use patches::{extract_all_wings, extract_patches};
+pub use simd::Instructions;
 pub use statistics::Statistics;

@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "the report is what this program is for")]
 
 mod calibrate;
+mod cpu;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -35,6 +36,9 @@ struct Options {
     /// survivor
     #[arg(long)]
     calibrate: bool,
+    /// Instead, time extraction on the CPU alone: every brute force and every kernel
+    #[arg(long, conflicts_with = "calibrate")]
+    cpu: bool,
     /// Mesh files
     #[arg(value_name = "MESH FILE")]
     files: Vec<PathBuf>,
@@ -73,6 +77,9 @@ fn run(options: &Options) -> Result<(), String> {
 fn measure(mesh: &Mesh, options: &Options) -> Result<(), String> {
     if options.calibrate {
         return calibrate::run(mesh, options.rounds);
+    }
+    if options.cpu {
+        return cpu::run(mesh, options.rounds);
     }
     let start = Instant::now();
     let adjacency = MeshAdjacency::new(mesh);

@@ -1,0 +1,42 @@
+//! Extraction allocates nothing once its output has been used.
+
+use std::ops::ControlFlow;
+
+use drypoint_cpu::{Contours, Extractor, Instructions};
+use drypoint_fusion::{FusionParams, Levels, fuse};
+use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
+use glam::DVec3;
+
+#[test]
+fn nothing_is_allocated_after_the_first_view() {
+    let mesh = shapes::icosphere(5_000);
+    let params = FusionParams { levels: Levels::Two, ..FusionParams::FAST };
+    let go_on = |_| ControlFlow::Continue(());
+    let set = fuse(&mesh, &MeshAdjacency::new(&mesh), EdgeFilter::All, &params, &go_on).unwrap();
+    let viewpoints = [
+        Viewpoint::at(DVec3::new(3.0, 1.0, 2.0)),
+        // Inside: nothing is a contour.
+        Viewpoint::at(DVec3::ZERO),
+        // On the surface and from the zero direction, where all is left to the exact predicate.
+        Viewpoint::at(mesh.position(0).as_dvec3()),
+        Viewpoint::from_direction(DVec3::ZERO),
+        Viewpoint::from_direction(DVec3::X),
+    ];
+    for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
+        let extractor = Extractor::with(&set, instructions).unwrap();
+        let (mut edges, mut pairs) = (Contours::default(), Contours::default());
+        let first = allocation_counter::measure(|| {
+            extractor.edges(viewpoints[0], &mut edges);
+            extractor.vertex_pairs(viewpoints[0], &mut pairs);
+        });
+        assert!(first.count_total > 0, "the counter counts");
+        let later = allocation_counter::measure(|| {
+            for viewpoint in viewpoints {
+                extractor.edges(viewpoint, &mut edges);
+                extractor.all_edges(viewpoint, &mut edges);
+                extractor.vertex_pairs(viewpoint, &mut pairs);
+            }
+        });
+        assert_eq!(later.count_total, 0, "{instructions:?}");
+    }
+}
