@@ -26,7 +26,7 @@ Usage: cargo xtask <COMMAND>
   validate --boundary  look at every patch from where it is just culled, and at meshes from near by
   validate --mutants   break the bounds on purpose and compare who notices with docs/mutants.md;
                        with --bless: write that page
-  bench [ARGS]         time every extractor; with --calibrate: what the cost model is made of
+  bench [ARGS]         time every extractor; with --calibrate: what the cost model is made of; --cpu: extraction alone
   ci                   what CI runs, in the same order
 
 Meshes for test, validate and bench are looked for in the folder DRYPOINT_MODELS.
