@@ -76,6 +76,10 @@ impl Frame {
     pub(crate) fn view(&self, viewpoint: Viewpoint) -> View {
         let (direction, w) = (viewpoint.from_point(self.center), viewpoint.w() * self.radius);
         let size = direction.length().hypot(w);
+        // Smaller, and the squares do not fit an f64.
+        if size < 1e-100 {
+            return [i16x8::splat(0); 2];
+        }
         let [x, y, z, w] =
             [direction.x, direction.y, direction.z, w].map(|number| rounded(number / size));
         [[x, y], [z, w]].map(|[a, b]| i16x8::from([a, b, a, b, a, b, a, b]))
@@ -214,12 +218,13 @@ mod tests {
         let block = frame.block(&positions, &wings);
         let seen = |viewpoint| look(&block, frame.view(viewpoint)).doubtful & 1;
         assert_eq!(seen(Viewpoint::at(DVec3::new(9.0, 4.0, 1.0))), 1);
-        // From where no sign is sure, every edge is.
+        // From where no sign is sure, every edge is doubtful.
         let folded = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let frame = Frame::new(&folded);
         let block = frame.block(&folded, &wings);
         let view = |viewpoint| look(&block, frame.view(viewpoint)).doubtful;
         assert_eq!(view(Viewpoint::from_direction(DVec3::ZERO)), 0xff);
+        assert_eq!(view(Viewpoint::from_direction(DVec3::new(1e-200, 2e-200, 0.0))), 0xff);
         assert_eq!(view(Viewpoint::at(DVec3::new(5.0, 4.0, 3.0))), 0);
     }
 }

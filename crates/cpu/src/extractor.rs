@@ -10,7 +10,7 @@ use crate::blocks::{EdgeBlock, Frame, LANES};
 use crate::patch_blocks::PatchBlock;
 use crate::simd::{self, Eye, Instructions, Labelled, SLACK, Seen};
 
-/// Finds contour edges through patches, as fast as the processor can.
+/// Finds contour edges through patches, with the newest instructions of the processor.
 ///
 /// [`extract_patches`](crate::extract_patches) finds the same edges in the same order. Here planes
 /// are whole numbers of 16 bits, laid out once, eight edges side by side; where these are not sure of
@@ -127,13 +127,14 @@ impl<'a> Extractor<'a> {
     }
 
     /// Replaces `contours` by the contour edges seen from `viewpoint`, by id, in patch order, the
-    /// always-tested ones last. Allocates nothing once `contours` has been used.
+    /// always-tested ones last. Allocates nothing once `contours` has been used, but
+    /// where an exact sign needs rational numbers.
     pub fn edges(&self, viewpoint: Viewpoint, contours: &mut Contours<EdgeId>) -> Statistics {
         self.extract(viewpoint, &self.edges, EdgeId(0), contours)
     }
 
-    /// The same as [`Extractor::edges`], by the edges' vertices in the mesh, lower index first: what
-    /// is drawn.
+    /// The same as [`Extractor::edges`], by the edges' vertices in the mesh, lower index first;
+    /// once for each wing of an edge where more than two faces meet.
     pub fn vertex_pairs(
         &self,
         viewpoint: Viewpoint,

@@ -1,4 +1,4 @@
-//! The two loops that take the time, for the widest registers that the processor has.
+//! The two loops that take the time, with the newest instructions that the processor has.
 //!
 //! There is one of each. It is compiled for several instruction sets and does the same in all: whole
 //! numbers are exact, and f32 is added and multiplied in the same order, never fused.
