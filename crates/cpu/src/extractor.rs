@@ -14,10 +14,11 @@ use crate::simd::{self, Eye, Instructions, Labelled, SLACK, Seen};
 ///
 /// [`extract_patches`](crate::extract_patches) finds the same edges in the same order. Here planes
 /// are whole numbers of 16 bits, laid out once, eight edges side by side; where these are not sure of
-/// a sign, some 1 in 10,000, the exact predicate is asked. So the answer is that of the definition,
+/// a sign, at faces seen edge-on, the exact predicate is asked. So the answer is that of the definition,
 /// with any [`Instructions`].
 ///
-/// Some 45 bytes for each edge, beside the patches themselves.
+/// 29 bytes for each place in a block of eight edges, beside the patches themselves: a patch's last
+/// block may have fewer.
 #[derive(Clone, Debug)]
 pub struct Extractor<'a> {
     patches: &'a PatchSet,
@@ -39,7 +40,7 @@ pub struct Extractor<'a> {
 
 /// What an [`Extractor`] found, and memory for the next time: edge ids or vertex pairs.
 ///
-/// It grows once to the number of all edges, and never again for the same extractor.
+/// It grows once to the places of all edges, and never again for the same extractor.
 #[derive(Clone, Debug)]
 pub struct Contours<T> {
     found: Vec<T>,
@@ -62,10 +63,9 @@ impl<T> Deref for Contours<T> {
 }
 
 impl<'a> Extractor<'a> {
-    /// Lays out `patches`, for the widest instructions that this processor has. Linear, some 60 ns
-    /// for each edge.
+    /// Lays out `patches`, for the newest instructions that this processor has. Linear.
     pub fn new(patches: &'a PatchSet) -> Self {
-        Self::laid_out(patches, Instructions::widest())
+        Self::laid_out(patches, Instructions::newest())
     }
 
     /// The same for certain instructions; `None` if this processor has not got them.
@@ -77,7 +77,7 @@ impl<'a> Extractor<'a> {
         let mut extractor = Self {
             patches,
             instructions,
-            frame: Frame::new(patches.positions()),
+            frame: Frame::new(patches.positions(), patches.wings()),
             blocks: Vec::new(),
             edges: Vec::new(),
             pairs: Vec::new(),
@@ -127,14 +127,14 @@ impl<'a> Extractor<'a> {
     }
 
     /// Replaces `contours` by the contour edges seen from `viewpoint`, by id, in patch order, the
-    /// always-tested ones last. Allocates nothing once `contours` has been used, but
-    /// where an exact sign needs rational numbers.
+    /// always-tested ones last. Allocates nothing once `contours` has been used, but where
+    /// an exact sign needs rational numbers.
     pub fn edges(&self, viewpoint: Viewpoint, contours: &mut Contours<EdgeId>) -> Statistics {
         self.extract(viewpoint, &self.edges, EdgeId(0), contours)
     }
 
-    /// The same as [`Extractor::edges`], by the edges' vertices in the mesh, lower index first;
-    /// once for each wing of an edge where more than two faces meet.
+    /// The same as [`Extractor::edges`], by the edges' vertices in the mesh, lower index first; once
+    /// for each wing of an edge where more than two faces meet.
     pub fn vertex_pairs(
         &self,
         viewpoint: Viewpoint,

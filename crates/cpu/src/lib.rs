@@ -5,9 +5,9 @@
 //!
 //! | | looks at | for |
 //! |---|---|---|
-//! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the widest instructions | every frame |
+//! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the newest instructions | every frame |
 //! | [`Extractor::all_edges`] | every edge, with the same instructions | measuring what patches gain |
-//! | [`extract_patches`] | the same patches and edges, with exact predicates throughout | few views, where laying out does not pay |
+//! | [`extract_patches`] | the same patches and edges, with exact predicates throughout, nothing laid out | a single view |
 //! | [`BruteForce`] | every face, then every edge, with exact predicates | a mesh without patches |
 //! | [`extract_all_wings`] | every edge, with exact predicates | a patch file without its mesh |
 //!

@@ -20,7 +20,7 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// All that there are, narrowest first.
+    /// All that there are, oldest first.
     pub const ALL: [Self; 2] = [Self::Portable, Self::Avx2];
 
     /// Whether this processor has them.
@@ -38,8 +38,8 @@ impl Instructions {
         }
     }
 
-    /// The widest that this processor has.
-    pub fn widest() -> Self {
+    /// The newest that this processor has.
+    pub fn newest() -> Self {
         Self::ALL.into_iter().rfind(|set| set.are_here()).unwrap_or(Self::Portable)
     }
 }
@@ -61,7 +61,8 @@ macro_rules! dispatch {
             #[expect(unsafe_code, reason = "to use instructions that not every processor has")]
             match instructions {
                 Instructions::Portable => {}
-                // SAFETY: `Extractor::with` lets no instructions pass that are not here.
+                // SAFETY: an `Extractor`, the only caller, has none that are not here: `new` takes the
+                // newest that are, `with` asks.
                 Instructions::Avx2 => return unsafe { $avx2($($argument),*) },
             }
             #[cfg(not(target_arch = "x86_64"))]
@@ -174,8 +175,9 @@ pub(crate) struct Seen {
 }
 
 dispatch! {
-    /// Writes to `contours` the labels of the contour edges in the edge blocks whose `numbers` are given, in that order, and tells how many there are. Doubtful ones are decided by `ask`,
-    /// which is given the number of a block and what was seen, and gives the bits of the contour edges.
+    /// Writes to `contours` the labels of the contour edges in the edge blocks whose `numbers` are
+    /// given, in that order, and tells how many there are. Doubtful ones are decided by `ask`, which is
+    /// given the number of a block and what was seen, and gives the bits of the contour edges.
     /// `contours` has room for all, and [`SLACK`] more.
     test, test_avx2, test_anywhere<T>,
     (numbers: &[u32], edges: Labelled<'_, T>, view: View, ask: &dyn Fn(u32, Seen) -> u32, contours: &mut [T]) -> usize

@@ -1,14 +1,8 @@
 //! Edges as fusion sees them: in f64, in a frame where half the longest side of the mesh is 1.
 
-use drypoint_mesh::{EdgeClass, EdgeId, HalfEdge, Mesh, MeshAdjacency};
+use drypoint_mesh::{EdgeClass, EdgeId, HalfEdge, Mesh, MeshAdjacency, unit_normal};
 use glam::DVec3;
 use rayon::prelude::*;
-
-/// Sine of the smallest corner angle at which a face's normal is trusted. Differences of f32 lose at
-/// most 2⁻⁵³ of their size in f64, so above this the normal is off by less than 1e-7 radians, well within
-/// what the bounds are grown by. Edges of thinner faces are always tested, those of faces without area
-/// among them.
-const LEAST_SINE: f64 = 1e-8;
 
 /// The planes and the place of one edge.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +35,11 @@ impl<'a> Frame<'a> {
         let unit = bounds.half_longest_side();
         let normals = || {
             let triangles = mesh.triangles().par_iter();
-            triangles.map(|&corners| unit_normal(mesh, corners).unwrap_or_default()).collect()
+            triangles
+                .map(|&corners| {
+                    unit_normal(corners.map(|vertex| mesh.position(vertex))).unwrap_or_default()
+                })
+                .collect()
         };
         (unit > 0.0).then(|| Self {
             mesh,
@@ -111,17 +109,4 @@ impl<'a> Frame<'a> {
         let triangles = self.adjacency.sides(edge).map(HalfEdge::triangle);
         (triangles, self.adjacency.is_right_turned(edge))
     }
-}
-
-/// The unit normal of a triangle, from the first of its corners where it can be trusted.
-fn unit_normal(mesh: &Mesh, corners: [u32; 3]) -> Option<DVec3> {
-    let [a, b, c] = corners.map(|vertex| mesh.position(vertex).as_dvec3());
-    // A sliver's angle may be small at any one corner, as long as the normal is sure.
-    [[a, b, c], [b, c, a], [c, a, b]].into_iter().find_map(|[a, b, c]| {
-        let (u, v) = (b - a, c - a);
-        let normal = u.cross(v);
-        // |u × v| ≥ sin |u| |v|, without dividing by lengths that may be zero.
-        let least_squared = LEAST_SINE * LEAST_SINE * u.length_squared() * v.length_squared();
-        if normal.length_squared() > least_squared { normal.try_normalize() } else { None }
-    })
 }

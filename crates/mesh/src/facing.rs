@@ -17,7 +17,7 @@ use crate::{Mesh, Viewpoint};
 /// the other. `Equal`: in the plane, or the corners are collinear and span none.
 ///
 /// Permuting the corners evenly changes nothing and oddly reverses the answer, so any edge that
-/// asks about a face gets the same one. About 10 ns; microseconds where coordinates of one triangle
+/// asks about a face gets the same one. Tens of nanoseconds; microseconds where coordinates of one triangle
 /// differ by more than 2^28 in size and the direction of an orthographic view grazes it.
 pub fn face_side(corners: [Vec3; 3], viewpoint: Viewpoint) -> Ordering {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
@@ -27,9 +27,9 @@ pub fn face_side(corners: [Vec3; 3], viewpoint: Viewpoint) -> Ordering {
 /// The same where f64 is sure of it.
 ///
 /// Three differences, their products and sums are each off by 2⁻⁵³ of themselves at most, so that
-/// the determinant is off by less than 8 · 2⁻⁵³ times the sum of the sizes of its terms, and that is
-/// no more than the product of the three sums of components. What it compares with is rounded too:
-/// hence 16.
+/// the determinant is off by some 8 · 2⁻⁵³ times the sum of the sizes of its terms, and that is no
+/// more than the product of the three sums of components. What it compares with is rounded as often:
+/// twice as much is enough. Nothing over- or underflows, from f32 and where [`Viewpoint`] may be.
 #[inline]
 fn sure_side([a, b, c]: [DVec3; 3], viewpoint: Viewpoint) -> Option<Ordering> {
     let (u, v, to_viewpoint) = (b - a, c - a, viewpoint.from_point(a));
@@ -65,6 +65,26 @@ pub fn face_sides(mesh: &Mesh, viewpoint: Viewpoint, sides: &mut Vec<Ordering>) 
     sides.clear();
     sides
         .extend(mesh.triangles().iter().map(|t| face_side(t.map(|v| mesh.position(v)), viewpoint)));
+}
+
+/// Sine of the smallest corner angle at which [`unit_normal`] trusts a face. Differences of f32 lose
+/// at most 2⁻⁵³ of their size in f64.
+const LEAST_SINE: f64 = 1e-8;
+
+/// The unit normal of a face whose corners run counter-clockwise, off by less than 1e-7 radians.
+///
+/// `None` where that is not sure: at faces without area, and at those all of whose angles have a sine
+/// below 1e-8. Some 20 multiplications.
+pub fn unit_normal(corners: [Vec3; 3]) -> Option<DVec3> {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    // A sliver's angle may be small at any one corner, as long as the normal is sure.
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().find_map(|[a, b, c]| {
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(v);
+        // |u × v| ≥ sin |u| |v|, without dividing by lengths that may be zero.
+        let least_squared = LEAST_SINE * LEAST_SINE * u.length_squared() * v.length_squared();
+        if normal.length_squared() > least_squared { normal.try_normalize() } else { None }
+    })
 }
 
 /// Whether the corners span a plane: exactly, `false` if and only if they are collinear.
@@ -134,6 +154,18 @@ mod tests {
             [seen_along(1e-60), seen_along(0.0), seen_along(-1e-60)],
             [Ordering::Greater, Ordering::Equal, Ordering::Less]
         );
+    }
+
+    #[test]
+    fn a_normal_is_trusted_where_one_corner_is_wide_enough() {
+        assert_eq!(unit_normal(CORNERS), Some(DVec3::Z));
+        assert_eq!(unit_normal([Vec3::ONE, Vec3::splat(2.0), Vec3::splat(-7.0)]), None);
+        let sliver = |width: f32| [Vec3::ZERO, Vec3::X, Vec3::new(0.5, width, 0.0)];
+        for turn in 0..3 {
+            let turned = |width| std::array::from_fn(|i| sliver(width)[(i + turn) % 3]);
+            assert_eq!(unit_normal(turned(1e-7)), Some(DVec3::Z));
+            assert_eq!(unit_normal(turned(1e-9)), None);
+        }
     }
 
     #[test]

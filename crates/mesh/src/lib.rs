@@ -35,7 +35,7 @@ pub mod shapes;
 pub use adjacency::{MeshAdjacency, TopologyReport};
 pub use classes::{EdgeClass, EdgeFilter, dihedral_angle};
 pub use contours::{contour_edges, contour_vertex_pairs, is_contour};
-pub use facing::{face_side, face_sides, has_area, volume_side};
+pub use facing::{face_side, face_sides, has_area, unit_normal, volume_side};
 pub use mesh::{Aabb, MAX_TRIANGLES, Mesh, MeshError};
 pub use viewpoint::Viewpoint;
 pub use weld::weld_by_position;

@@ -31,6 +31,9 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
     };
     let patches = fused(FusionParams::DEFAULT)?;
     let two_levels = fused(FusionParams { levels: Levels::Two, ..FusionParams::DEFAULT })?;
+    let start = Instant::now();
+    black_box(Extractor::new(&patches));
+    println!("  laid out in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
     let brute_force = BruteForce::new(mesh, &adjacency, EdgeFilter::Convex);
     let mut contenders = exact_ones(&patches, brute_force);
     for instructions in Instructions::ALL {
