@@ -1,7 +1,8 @@
 //! Every extractor against the definition.
 
 use drypoint_cpu::{
-    BruteForce, Contours, Extractor, Instructions, Statistics, extract_all_wings, extract_patches,
+    BruteForce, Contours, Extractor, FaceSigns, FaceStrips, Instructions, Statistics, StoredPlanes,
+    extract_all_wings, extract_patches,
 };
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
@@ -68,15 +69,18 @@ impl Expected {
         filter: EdgeFilter,
         viewpoints: &[Viewpoint],
     ) -> Result<Self, Box<Disagreement>> {
-        let brute_force = BruteForce::new(mesh, adjacency, filter);
-        let look = |brute_force: &mut BruteForce<'_>, &viewpoint: &Viewpoint| {
+        let exact = BruteForce::new(mesh, adjacency, filter);
+        let laid_out = LaidOut::of_every_kind(mesh, adjacency, filter);
+        let look = |(exact, laid_out): &mut (BruteForce<'_>, Vec<LaidOut<'_>>),
+                    &viewpoint: &Viewpoint| {
             let (mut expected, mut found) = (Vec::new(), Vec::new());
             contour_edges(mesh, adjacency, viewpoint, filter, &mut expected);
-            brute_force.extract(viewpoint, &mut found);
+            exact.extract(viewpoint, &mut found);
             check("brute-force", viewpoint, &expected, &found)?;
+            laid_out.iter_mut().try_for_each(|each| each.compare(viewpoint, &expected))?;
             Ok((viewpoint, expected))
         };
-        let views = viewpoints.par_iter().map_init(|| brute_force.clone(), look);
+        let views = viewpoints.par_iter().map_init(|| (exact.clone(), laid_out.clone()), look);
         Ok(Self { filter, views: views.collect::<Result<_, Box<Disagreement>>>()? })
     }
 
@@ -87,11 +91,14 @@ impl Expected {
     /// Where they do not.
     pub fn compare(&self, patches: &PatchSet) -> Result<Agreement, Box<Disagreement>> {
         assert_eq!(patches.edge_filter(), self.filter, "made with another filter");
-        let extractors: Vec<(&str, Extractor<'_>)> =
-            [("portable kernels", Instructions::Portable), ("AVX2 kernels", Instructions::Avx2)]
-                .into_iter()
-                .filter_map(|(name, set)| Some((name, Extractor::with(patches, set)?)))
-                .collect();
+        let extractors: Vec<(&str, Extractor<'_>)> = [
+            ("portable kernels", Instructions::Portable),
+            ("AVX2 kernels", Instructions::Avx2),
+            ("AVX-512 kernels", Instructions::Avx512),
+        ]
+        .into_iter()
+        .filter_map(|(name, set)| Some((name, Extractor::with(patches, set)?)))
+        .collect();
         let mut ends =
             vec![[0; 2]; patches.edge_ids().iter().map(|e| e.index() + 1).max().unwrap_or(0)];
         for (edge, wing) in patches.edge_ids().iter().zip(patches.wings()) {
@@ -105,9 +112,7 @@ impl Expected {
             }
             let statistics = extract_patches(patches, viewpoint, &mut found);
             check("patches", viewpoint, expected, &sorted(&found))?;
-            for (name, extractor) in &extractors {
-                compare_kernels(name, extractor, viewpoint, (&ends, &found, statistics))?;
-            }
+            compare_kernels(&extractors, viewpoint, &ends, (expected, statistics))?;
             Ok(Agreement {
                 viewpoints: 1,
                 contour_edges: expected.len(),
@@ -120,22 +125,73 @@ impl Expected {
     }
 }
 
-/// Kernels find the same edges as patches tested one by one, in the same order, after as many tests.
+/// The brute forces with planes in whole numbers, for one instruction set.
+#[derive(Clone)]
+struct LaidOut<'mesh> {
+    stored: StoredPlanes<'mesh>,
+    signs: FaceSigns<'mesh>,
+    strips: FaceStrips<'mesh>,
+    contours: Contours<EdgeId>,
+}
+
+impl<'mesh> LaidOut<'mesh> {
+    /// For each instruction set of this processor.
+    fn of_every_kind(
+        mesh: &'mesh Mesh,
+        adjacency: &MeshAdjacency,
+        filter: EdgeFilter,
+    ) -> Vec<Self> {
+        let stored = StoredPlanes::new(mesh, adjacency, filter);
+        let signs = FaceSigns::new(mesh, adjacency, filter);
+        let strips = FaceStrips::new(mesh, adjacency, filter);
+        let with = |set| {
+            Some(Self {
+                stored: stored.clone().with_instructions(set)?,
+                signs: signs.clone().with_instructions(set)?,
+                strips: strips.clone().with_instructions(set)?,
+                contours: Contours::default(),
+            })
+        };
+        Instructions::ALL.into_iter().filter_map(with).collect()
+    }
+
+    fn compare(
+        &mut self,
+        viewpoint: Viewpoint,
+        expected: &[EdgeId],
+    ) -> Result<(), Box<Disagreement>> {
+        let Self { stored, signs, strips, contours } = self;
+        stored.extract(viewpoint, contours);
+        check("stored planes", viewpoint, expected, contours)?;
+        signs.extract(viewpoint, contours);
+        check("face signs", viewpoint, expected, contours)?;
+        strips.extract(viewpoint, contours);
+        check("face strips", viewpoint, expected, &sorted(contours))
+    }
+}
+
+/// Kernels find the same edges, after as many tests as patches tested one by one, and all of them in
+/// the same order.
 fn compare_kernels(
-    name: &'static str,
-    extractor: &Extractor<'_>,
+    extractors: &[(&'static str, Extractor<'_>)],
     viewpoint: Viewpoint,
-    (ends, expected, statistics): (&[[u32; 2]], &[EdgeId], Statistics),
+    ends: &[[u32; 2]],
+    (expected, statistics): (&[EdgeId], Statistics),
 ) -> Result<(), Box<Disagreement>> {
     let (mut edges, mut pairs) = (Contours::default(), Contours::default());
-    assert_eq!(extractor.edges(viewpoint, &mut edges), statistics, "{name} from {viewpoint:?}");
-    check(name, viewpoint, &sorted(expected), &sorted(&edges))?;
-    assert!(expected == &*edges, "order of {name} from {viewpoint:?}");
-    extractor.vertex_pairs(viewpoint, &mut pairs);
-    let ends = expected.iter().map(|edge| &ends[edge.index()]);
-    assert!(pairs.iter().eq(ends), "vertex pairs of {name} from {viewpoint:?}");
-    extractor.all_edges(viewpoint, &mut edges);
-    check(name, viewpoint, &sorted(expected), &sorted(&edges))
+    let mut first: Option<Vec<EdgeId>> = None;
+    for (name, extractor) in extractors {
+        assert_eq!(extractor.edges(viewpoint, &mut edges), statistics, "{name} from {viewpoint:?}");
+        check(name, viewpoint, expected, &sorted(&edges))?;
+        let first = first.get_or_insert_with(|| edges.to_vec());
+        assert!(*first == *edges, "order of {name} from {viewpoint:?}");
+        extractor.vertex_pairs(viewpoint, &mut pairs);
+        let ends = edges.iter().map(|edge| &ends[edge.index()]);
+        assert!(pairs.iter().eq(ends), "vertex pairs of {name} from {viewpoint:?}");
+        extractor.all_edges(viewpoint, &mut edges);
+        check(name, viewpoint, expected, &sorted(&edges))?;
+    }
+    Ok(())
 }
 
 /// Looks at `mesh` from every viewpoint with every extractor.

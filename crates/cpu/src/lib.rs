@@ -36,16 +36,22 @@
 //! assert!(statistics.edges_tested < patches.wings().len() / 2, "most patches are culled");
 //! ```
 
-mod blocks;
+mod bounds;
 mod brute_force;
+mod contours;
+mod edges;
+mod exact;
 mod extractor;
-mod patch_blocks;
+mod faces;
+mod kernels;
 mod patches;
 mod simd;
 mod statistics;
+mod strips;
 
-pub use brute_force::BruteForce;
-pub use extractor::{Contours, Extractor};
+pub use brute_force::{BruteForce, FaceSigns, FaceStrips, StoredPlanes, extract_naively};
+pub use contours::Contours;
+pub use extractor::Extractor;
 pub use patches::{extract_all_wings, extract_patches};
 pub use simd::Instructions;
 pub use statistics::Statistics;

@@ -5,10 +5,11 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use drypoint_cpu::{
-    BruteForce, Contours, Extractor, Instructions, extract_all_wings, extract_patches,
+    BruteForce, Extractor, FaceSigns, FaceStrips, Instructions, StoredPlanes, extract_all_wings,
+    extract_naively, extract_patches,
 };
-use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
-use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, Wing};
+use drypoint_fusion::{CostModel, FusionParams, Levels, PatchSet, fuse};
+use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint};
 use drypoint_tests::compare::compare;
 use drypoint_tests::viewpoints;
 
@@ -29,109 +30,128 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
             .map_err(|wrong| format!("{} disagrees with the definition", wrong.extractor))?;
         Ok::<_, String>(set)
     };
-    let patches = fused(FusionParams::DEFAULT)?;
-    let two_levels = fused(FusionParams { levels: Levels::Two, ..FusionParams::DEFAULT })?;
+    let params = FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::DEFAULT };
+    let patches = fused(params)?;
+    let two_levels = fused(FusionParams { levels: Levels::Two, ..params })?;
     let start = Instant::now();
     black_box(Extractor::new(&patches));
     println!("  laid out in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-    let brute_force = BruteForce::new(mesh, &adjacency, EdgeFilter::Convex);
-    let mut contenders = exact_ones(&patches, brute_force);
-    for instructions in Instructions::ALL {
-        let Some(extractor) = Extractor::with(&patches, instructions) else { continue };
-        let mut contours = Contours::default();
-        let every_edge = extractor.clone();
-        let look = move |viewpoint| {
-            black_box(every_edge.all_edges(viewpoint, &mut contours));
-        };
-        contenders.push((format!("every edge, {instructions:?}"), Box::new(look)));
-        contenders.extend(through_patches(extractor, &format!("{instructions:?}")));
-        let extractor = Extractor::with(&two_levels, instructions);
+    let mut contenders = exact_ones(mesh, &adjacency, &patches);
+    for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
+        contenders.extend(brute_forces(mesh, &adjacency, instructions));
+        let name = format!("{instructions:?}");
+        let extractor = Extractor::with(&patches, instructions);
+        contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
         let name = format!("{instructions:?}, two levels");
+        let extractor = Extractor::with(&two_levels, instructions);
         contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
     }
+    // As cameras have them.
+    let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
+    let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
+    println!("  from viewpoints in f32:");
+    report(&mut contenders, &rounded, rounds);
+    println!("  from viewpoints in f64:");
     report(&mut contenders, &viewpoints, rounds);
     Ok(())
 }
 
+fn contender<'a, T>(
+    name: impl Into<String>,
+    mut look: impl FnMut(Viewpoint, &mut T) + 'a,
+) -> Contender<'a>
+where
+    T: Default + 'a,
+{
+    let mut found = T::default();
+    let look = move |viewpoint| {
+        look(viewpoint, &mut found);
+        black_box(&found);
+    };
+    (name.into(), Box::new(look))
+}
+
 /// The naive loop, and those with exact predicates throughout.
-fn exact_ones<'a>(patches: &'a PatchSet, mut brute_force: BruteForce<'a>) -> Vec<Contender<'a>> {
-    let [mut naively, mut every_edge, mut by_face, mut by_patches] = [const { Vec::new() }; 4];
+fn exact_ones<'a>(
+    mesh: &'a Mesh,
+    adjacency: &MeshAdjacency,
+    patches: &'a PatchSet,
+) -> Vec<Contender<'a>> {
+    let mut by_face = BruteForce::new(mesh, adjacency, EdgeFilter::Convex);
     vec![
-        (
-            "every edge in f32, normals from vertices, inexact".into(),
-            Box::new(move |viewpoint| {
-                naive(patches, viewpoint, &mut naively);
-                black_box(&naively);
-            }),
-        ),
-        (
-            "every edge, exact predicates".into(),
-            Box::new(move |viewpoint| {
-                black_box(extract_all_wings(patches, viewpoint, &mut every_edge));
-            }),
-        ),
-        (
-            "every face, then every edge, exact predicates".into(),
-            Box::new(move |viewpoint| {
-                black_box(brute_force.extract(viewpoint, &mut by_face));
-            }),
-        ),
-        (
-            "patches, exact predicates".into(),
-            Box::new(move |viewpoint| {
-                black_box(extract_patches(patches, viewpoint, &mut by_patches));
-            }),
-        ),
+        contender("every edge in f32, normals from vertices, inexact", |viewpoint, found| {
+            extract_naively(patches, viewpoint, found);
+        }),
+        contender("every edge, exact predicates", |viewpoint, found| {
+            extract_all_wings(patches, viewpoint, found);
+        }),
+        contender("every face, then every edge, exact predicates", move |viewpoint, found| {
+            by_face.extract(viewpoint, found);
+        }),
+        contender("patches, exact predicates", |viewpoint, found| {
+            extract_patches(patches, viewpoint, found);
+        }),
     ]
+}
+
+/// Those with planes in whole numbers.
+fn brute_forces<'a>(
+    mesh: &'a Mesh,
+    adjacency: &MeshAdjacency,
+    instructions: Instructions,
+) -> Vec<Contender<'a>> {
+    let mut contenders = Vec::new();
+    let filter = EdgeFilter::Convex;
+    if let Some(stored) = StoredPlanes::new(mesh, adjacency, filter).with_instructions(instructions)
+    {
+        contenders.push(contender(
+            format!("stored planes, {instructions:?}"),
+            move |view, found| {
+                stored.extract(view, found);
+            },
+        ));
+    }
+    if let Some(mut signs) = FaceSigns::new(mesh, adjacency, filter).with_instructions(instructions)
+    {
+        contenders.push(contender(format!("face signs, {instructions:?}"), move |view, found| {
+            signs.extract(view, found);
+        }));
+    }
+    if let Some(strips) = FaceStrips::new(mesh, adjacency, filter).with_instructions(instructions) {
+        contenders.push(contender(format!("face strips, {instructions:?}"), move |view, found| {
+            strips.extract(view, found);
+        }));
+    }
+    contenders
 }
 
 fn through_patches<'a>(extractor: Extractor<'a>, name: &str) -> [Contender<'a>; 2] {
     let by_pairs = extractor.clone();
-    let (mut edges, mut pairs) = (Contours::default(), Contours::default());
-    let look_for_edges = move |viewpoint| {
-        black_box(extractor.edges(viewpoint, &mut edges));
-    };
-    let look_for_pairs = move |viewpoint| {
-        black_box(by_pairs.vertex_pairs(viewpoint, &mut pairs));
-    };
     [
-        (format!("patches, ids, {name}"), Box::new(look_for_edges)),
-        (format!("patches, vertex pairs, {name}"), Box::new(look_for_pairs)),
+        contender(format!("patches, ids, {name}"), move |viewpoint, found| {
+            extractor.edges(viewpoint, found);
+        }),
+        contender(format!("patches, vertex pairs, {name}"), move |viewpoint, found| {
+            by_pairs.vertex_pairs(viewpoint, found);
+        }),
     ]
 }
 
-/// Times all in turn, again and again.
+/// Times all in turn, again and again, each after a pass that brings its own data into the caches.
 fn report(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u32) {
     let mut times = vec![Vec::new(); contenders.len()];
-    // The first round only warms up.
-    for round in 0..=rounds {
+    for _ in 0..rounds {
         for ((_, look), times) in contenders.iter_mut().zip(&mut times) {
+            viewpoints.iter().for_each(|&viewpoint| look(viewpoint));
             let start = Instant::now();
             viewpoints.iter().for_each(|&viewpoint| look(viewpoint));
-            let micros = 1e6 * start.elapsed().as_secs_f64() / viewpoints.len().max(1) as f64;
-            if round > 0 {
-                times.push(micros);
-            }
+            times.push(1e6 * start.elapsed().as_secs_f64() / viewpoints.len().max(1) as f64);
         }
     }
     for ((name, _), own) in contenders.iter().zip(&times) {
         let ratios = times[0].iter().zip(own).map(|(first, own)| first / own).collect();
         let [low, ratio, high] = quartiles(ratios);
         let micros = quartiles(own.clone())[1];
-        println!("  {name:<50}{micros:>9.1} µs {ratio:>7.1} x [{low:.1}, {high:.1}]");
+        println!("  {name:<52}{micros:>9.1} µs {ratio:>7.1} x [{low:.1}, {high:.1}]");
     }
-}
-
-/// What renderers do, and the first thing one would write: two normals for each edge, and the signs as
-/// they come. Edges that are seen at grazing angles may be lost or invented.
-fn naive(patches: &PatchSet, viewpoint: Viewpoint, contours: &mut Vec<EdgeId>) {
-    let (eye, positions) = (viewpoint.xyz().as_vec3(), patches.positions());
-    let is_front = |face: [u32; 3]| {
-        let [a, b, c] = face.map(|vertex| positions[vertex as usize]);
-        (b - a).cross(c - a).dot(eye - a) >= 0.0
-    };
-    let is_contour = |wing: &Wing| is_front(wing.left_face()) != is_front(wing.right_face());
-    let edges = patches.wings().iter().zip(patches.edge_ids());
-    contours.clear();
-    contours.extend(edges.filter(|(wing, _)| is_contour(wing)).map(|(_, edge)| *edge));
 }

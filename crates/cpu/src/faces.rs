@@ -1,4 +1,4 @@
-//! Planes in whole numbers, eight edges side by side.
+//! Planes of faces in whole numbers, sixteen side by side.
 //!
 //! A plane with unit normal n through p has, as seen from a homogeneous viewpoint (v, w), the sign
 //! of n · (v − w p). About a center c, and in units of R, half the diagonal of the mesh's box, that
@@ -6,46 +6,88 @@
 //!
 //! g = (n, −n · (p − c) / R) · (v − w c, w R) / |(v − w c, w R)|.
 //!
-//! Both have a length of at most √2 and 1. Times S = 2¹⁵ − 1 and rounded to whole numbers, they are
-//! off by ½ in each place, and by what the normal is off by (below). The product of the whole
-//! numbers fits an i32, since S² √2 < 2³¹ by far more than the rounding, and is exact: it depends
-//! on no order and on no processor. It is off from S² g by at most
+//! Both have a length of at most √2 and 1. Times S = 2¹⁵ − 1 they are p and q, and rounded to whole
+//! numbers P = p + δ and Q = q + ε, off by ½ in each place at most. The product P · Q fits an i32, since
+//! S² √2 < 2³¹ by far more than the rounding, and is exact: it depends on no order and on no processor.
+//! It is off from S² g by
 //!
-//! Σ ½ |plane| + ½ |view| + ¼ ≤ ½ S (√3 + 1) + ½ S · 2 + 1,
+//! P · Q − p · q = δ · q + P · ε ≤ ½ Σ |q| + (S + 1) |ε₁₂₃| + S |ε₄|,
 //!
-//! as no unit normal has a sum of components above √3, and no vector of four numbers of length 1
-//! one above 2. If it is farther from 0 than that, its sign is the plane's: else the exact predicate
-//! is asked: where a plane is seen under an angle below 1e-4 radians, as all those are that are parallel
-//! to the direction of an orthographic view.
+//! as the normal in P is no longer than S + ½ √3, and its offset no more than S. That is between ½ S and
+//! 2.37 S, and known once the viewpoint is; 181 = 2⁻²³ S² √2 more pays for the 1e-7 radians that
+//! [`unit_normal`] may be off by. If the product is farther from 0 than that, its sign is the plane's:
+//! else the exact predicate is asked: where a plane is seen under an angle below 1e-4 radians, as all
+//! those are that are parallel to the direction of an orthographic view.
 
 use drypoint_mesh::{Viewpoint, Wing, unit_normal};
-use glam::{DVec3, Vec3};
-use wide::i16x8;
+use glam::{DVec3, DVec4, Vec3};
 
-/// Edges in a block.
-pub(crate) const LANES: usize = 8;
+use crate::simd::Lanes;
+
+/// Faces in a block, and patches.
+pub(crate) const LANES: usize = 16;
 
 /// S.
 const SCALE: f64 = 32_767.0;
 
-/// Beyond this, the product has the sign of the plane: ½ S (√3 + 3) + 1 = 77,527, and 2⁻²³ S² √2 =
-/// 181 for the 1e-7 radians that [`unit_normal`] may be off by, rounded up.
-pub(crate) const MARGIN: i32 = 78_000;
+/// Two components of sixteen planes: side by side, as one instruction multiplies and adds pairs.
+pub(crate) type Pairs = [[i16; 2]; LANES];
 
-/// Planes of eight faces, four at a time: components x and y of each, side by side, so that one
-/// instruction multiplies and adds pairs; then z and the offset.
-pub(crate) type Planes = [[i16x8; 2]; 2];
-
-/// Both faces' planes of eight edges: two cache lines.
+/// Planes of sixteen faces: two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct EdgeBlock {
-    pub(crate) left: Planes,
-    pub(crate) right: Planes,
+pub(crate) struct FaceBlock {
+    /// x and y of the normals.
+    xy: Pairs,
+    /// z, and the offset.
+    zd: Pairs,
 }
 
-/// The viewpoint in whole numbers, four times: x and y, then z and w.
-pub(crate) type View = [i16x8; 2];
+/// The viewpoint in whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// x and y, then z and w.
+    pairs: [[i16; 2]; 2],
+    /// A product of more than that, or less than minus that, has the sign of the plane.
+    margin: i32,
+}
+
+/// What a viewpoint sees of the faces of a block, a bit each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sides {
+    /// Faces that look away, if they are not doubtful.
+    pub(crate) back: u16,
+    /// Faces of which the exact predicate must tell.
+    pub(crate) doubtful: u16,
+}
+
+impl FaceBlock {
+    /// Of the plane that `plane` gives for each lane.
+    pub(crate) fn new(plane: impl Fn(usize) -> Plane) -> Self {
+        let components = |first: usize| {
+            std::array::from_fn(|lane| [plane(lane).0[first], plane(lane).0[first + 1]])
+        };
+        Self { xy: components(0), zd: components(2) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn sides<L: Lanes>(&self, lanes: L, view: View) -> Sides {
+        let heights = lanes.dot([&self.xy, &self.zd], view.pairs);
+        Sides { back: lanes.negative(heights), doubtful: lanes.within(heights, view.margin) }
+    }
+}
+
+/// Normal and offset in whole numbers; zero if the face spans no plane that can be trusted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Plane([i16; 4]);
+
+impl Plane {
+    /// The same, seen from behind.
+    pub(crate) fn turned(self, is_turned: bool) -> Self {
+        // No component is below −S.
+        if is_turned { Self(self.0.map(|component| -component)) } else { self }
+    }
+}
 
 /// What planes and viewpoints are measured from, and in.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +99,9 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// Around the corners of the faces beside `wings`: other vertices may be anywhere.
-    pub(crate) fn new(positions: &[Vec3], wings: &[Wing]) -> Self {
-        let corners = wings.iter().flat_map(|wing| [wing.tail, wing.head, wing.left, wing.right]);
+    pub(crate) fn new<'a>(positions: &[Vec3], wings: impl IntoIterator<Item = &'a Wing>) -> Self {
+        let corners =
+            wings.into_iter().flat_map(|wing| [wing.tail, wing.head, wing.left, wing.right]);
         let used = corners.filter(|&corner| corner != Wing::NONE);
         let (least, most) = used
             .map(|vertex| positions[vertex as usize].as_dvec3())
@@ -74,42 +117,31 @@ impl Frame {
         }
     }
 
-    /// Zero from where nothing is sure: from the zero direction, or if a number is not finite.
+    /// From the zero direction, and if a number is not finite, nothing is sure.
     pub(crate) fn view(&self, viewpoint: Viewpoint) -> View {
         let (direction, w) = (viewpoint.from_point(self.center), viewpoint.w() * self.radius);
-        let size = direction.length().hypot(w);
+        let homogeneous = DVec4::from((direction, w));
+        let size = homogeneous.length();
         // Smaller, and the squares do not fit an f64.
         if size < 1e-100 {
-            return [i16x8::splat(0); 2];
+            return View { pairs: [[0; 2]; 2], margin: 0 };
         }
-        let [x, y, z, w] =
-            [direction.x, direction.y, direction.z, w].map(|number| rounded(number / size));
-        [[x, y], [z, w]].map(|[a, b]| i16x8::from([a, b, a, b, a, b, a, b]))
+        let scaled = homogeneous * (SCALE / size);
+        let [x, y, z, w] = scaled.to_array().map(|number| rounded(number / SCALE));
+        let lost = DVec4::from([x, y, z, w].map(f64::from)) - scaled;
+        let margin = 0.5 * scaled.abs().element_sum()
+            + (SCALE + 1.0) * lost.truncate().length()
+            + SCALE * lost.w.abs();
+        #[expect(clippy::cast_possible_truncation, reason = "at most 2.37 S")]
+        let margin = (margin + 181.0).ceil() as i32;
+        View { pairs: [[x, y], [z, w]], margin }
     }
 
-    /// Of the face with these corners; zero if it spans no plane that can be trusted.
-    fn plane(&self, corners: [Vec3; 3]) -> [i16; 4] {
-        let Some(normal) = unit_normal(corners) else { return [0; 4] };
+    /// Of the face with these corners.
+    pub(crate) fn plane(&self, corners: [Vec3; 3]) -> Plane {
+        let Some(normal) = unit_normal(corners) else { return Plane::default() };
         let offset = -normal.dot(corners[0].as_dvec3() - self.center) / self.radius;
-        [normal.x, normal.y, normal.z, offset].map(rounded)
-    }
-
-    /// Up to eight edges; others are as if both their faces were one, and so are those that have but one.
-    pub(crate) fn block(&self, positions: &[Vec3], wings: &[Wing]) -> EdgeBlock {
-        let plane = |face: [u32; 3]| self.plane(face.map(|vertex| positions[vertex as usize]));
-        let planes: [[[i16; 4]; 2]; LANES] = std::array::from_fn(|lane| {
-            let wing = wings[lane.min(wings.len() - 1)];
-            let left = plane(wing.left_face());
-            let is_edge = lane < wings.len() && wing.right != Wing::NONE;
-            [left, if is_edge { plane(wing.right_face()) } else { left }]
-        });
-        let of_side = |side: usize| {
-            let pairs = |lane: usize, first: usize| {
-                i16x8::from(std::array::from_fn(|i| planes[lane + i / 2][side][first + i % 2]))
-            };
-            [[pairs(0, 0), pairs(0, 2)], [pairs(4, 0), pairs(4, 2)]]
-        };
-        EdgeBlock { left: of_side(0), right: of_side(1) }
+        Plane([normal.x, normal.y, normal.z, offset].map(rounded))
     }
 }
 
@@ -127,9 +159,34 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::simd::look;
+    use crate::edges::{Blocks, EdgePlanes, Seen};
+    use crate::simd::{Instructions, Kernel};
 
     const WING: Wing = Wing { tail: 0, head: 1, left: 2, right: 3 };
+
+    /// The first block, as every instruction set sees it.
+    struct Look<'a>(&'a EdgePlanes, View);
+
+    impl Kernel for Look<'_> {
+        type Output = Seen;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, lanes: L) -> Seen {
+            EdgePlanes::look(self.0.looked_at(), lanes, 0, self.1)
+        }
+    }
+
+    #[track_caller]
+    fn look(positions: &[Vec3], viewpoint: Viewpoint) -> Seen {
+        let frame = Frame::new(positions, &[WING]);
+        let mut blocks = EdgePlanes::default();
+        blocks.push(&frame, positions, &[WING], 0);
+        let levels = Instructions::ALL.into_iter().filter_map(Instructions::level);
+        let mut seen = levels.map(|level| level.run(Look(&blocks, frame.view(viewpoint))));
+        let first = seen.next().expect("one is always here");
+        assert!(seen.all(|seen| seen == first), "other instructions see {first:?} otherwise");
+        first
+    }
 
     fn point() -> impl Strategy<Value = Vec3> {
         [-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0].prop_map(Vec3::from_array)
@@ -171,8 +228,7 @@ mod tests {
             } else {
                 Viewpoint::from_direction(near - corners[0].as_dvec3())
             };
-            let frame = Frame::new(&positions, &[WING]);
-            let seen = look(&frame.block(&positions, &[WING]), frame.view(viewpoint));
+            let seen = look(&positions, viewpoint);
             let is_front = |face: [u32; 3]| {
                 face_side(face.map(|v| positions[v as usize]), viewpoint) != Ordering::Less
             };
@@ -183,20 +239,21 @@ mod tests {
         }
     }
 
-    /// How far the product of whole numbers is from S² g, for a plane and a viewpoint about the origin.
+    /// How far the product of whole numbers is from S² g, for a plane and a viewpoint about the origin,
+    /// as a share of the margin.
     fn error(frame: &Frame, [normal, at, eye]: [DVec3; 3]) -> f64 {
         let normal = normal.normalize();
         let offset = -normal.dot(at.clamp_length_max(frame.radius)) / frame.radius;
         let plane = [normal.x, normal.y, normal.z, offset].map(rounded).map(f64::from);
-        let [xy, zw] = frame.view(Viewpoint::at(eye)).map(|pairs| pairs.to_array());
-        let view = [xy[0], xy[1], zw[0], zw[1]].map(f64::from);
-        let product: f64 = plane.iter().zip(view).map(|(a, b)| a * b).sum();
+        let View { pairs: [[x, y], [z, w]], margin } = frame.view(Viewpoint::at(eye));
+        let product: f64 = plane.iter().zip([x, y, z, w]).map(|(a, b)| a * f64::from(b)).sum();
         let exact = normal.dot(eye) + offset * frame.radius;
-        (product - SCALE * SCALE * exact / eye.length().hypot(frame.radius)).abs()
+        let exact = SCALE * SCALE * exact / eye.length().hypot(frame.radius);
+        (product - exact).abs() / f64::from(margin)
     }
 
     /// A margin that nothing came near would be no margin, and a test of it none. The worst is where
-    /// all components are equal in size, all rounded the same way: climbed to from near there.
+    /// all components of one are rounded along the other: climbed to, from anywhere.
     #[test]
     fn products_come_close_to_the_margin() {
         let frame = Frame::new(
@@ -211,12 +268,7 @@ mod tests {
         let mut most = 0.0f64;
         for _ in 0..100 {
             let mut near = |size: f64| size * DVec3::new(number(), number(), number());
-            let radius = frame.radius;
-            let mut best = [
-                DVec3::ONE + near(0.05),
-                DVec3::NEG_ONE + near(0.02),
-                radius * DVec3::ONE + near(0.05),
-            ];
+            let mut best = [near(1.0), near(2.0), near(4.0)];
             let mut worst = error(&frame, best);
             for _ in 0..2000 {
                 let next = best.map(|vector| vector + near(3e-5));
@@ -226,33 +278,25 @@ mod tests {
             }
             most = most.max(worst);
         }
-        let margin = f64::from(MARGIN);
-        assert!((0.8 * margin..margin).contains(&most), "{most}");
+        assert!((0.9..1.0).contains(&most), "{most}");
     }
 
     #[test]
     fn faces_without_a_plane_are_doubtful() {
         let positions = [Vec3::ZERO, Vec3::X, Vec3::splat(0.5), Vec3::new(0.5, 0.0, 0.0)];
-        let frame = Frame::new(&positions, &[WING]);
-        let block = frame.block(&positions, &[WING]);
-        let seen = |viewpoint| look(&block, frame.view(viewpoint)).doubtful & 1;
-        assert_eq!(seen(Viewpoint::at(DVec3::new(9.0, 4.0, 1.0))), 1);
+        assert_eq!(look(&positions, Viewpoint::at(DVec3::new(9.0, 4.0, 1.0))).doubtful & 1, 1);
         // From where no sign is sure, every edge is doubtful.
         let folded = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-        let frame = Frame::new(&folded, &[WING]);
-        let block = frame.block(&folded, &[WING]);
-        let view = |viewpoint| look(&block, frame.view(viewpoint)).doubtful;
-        assert_eq!(view(Viewpoint::from_direction(DVec3::ZERO)), 0xff);
-        assert_eq!(view(Viewpoint::from_direction(DVec3::new(1e-200, 2e-200, 0.0))), 0xff);
-        assert_eq!(view(Viewpoint::at(DVec3::new(5.0, 4.0, 3.0))), 0);
+        let doubtful = |viewpoint| look(&folded, viewpoint).doubtful;
+        assert_eq!(doubtful(Viewpoint::from_direction(DVec3::ZERO)), 0xffff);
+        assert_eq!(doubtful(Viewpoint::from_direction(DVec3::new(1e-200, 2e-200, 0.0))), 0xffff);
+        assert_eq!(doubtful(Viewpoint::at(DVec3::new(5.0, 4.0, 3.0))), 0);
     }
 
     /// A frame around it would leave no sign sure.
     #[test]
     fn a_vertex_far_away_that_no_face_uses_changes_nothing() {
         let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(1e9)];
-        let frame = Frame::new(&positions, &[WING]);
-        let view = frame.view(Viewpoint::at(DVec3::new(5.0, 4.0, 3.0)));
-        assert_eq!(look(&frame.block(&positions, &[WING]), view).doubtful, 0);
+        assert_eq!(look(&positions, Viewpoint::at(DVec3::new(5.0, 4.0, 3.0))).doubtful, 0);
     }
 }

@@ -1,0 +1,68 @@
+//! Bounds, sixteen side by side.
+
+use drypoint_bounds::DoubleCone;
+
+use crate::faces::LANES;
+
+/// Up to sixteen bounds.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct BoundBlock {
+    pub(crate) centers: [[f32; LANES]; 3],
+    pub(crate) apex_distances: [f32; LANES],
+    pub(crate) axes: [[f32; LANES]; 3],
+    pub(crate) tans_squared: [f32; LANES],
+}
+
+impl BoundBlock {
+    /// Of at most sixteen.
+    fn new(bounds: &[DoubleCone]) -> Self {
+        let bound = |lane: usize| bounds.get(lane).unwrap_or(&DoubleCone::ALWAYS);
+        let column = |field: fn(&DoubleCone) -> f32| std::array::from_fn(|lane| field(bound(lane)));
+        Self {
+            centers: [column(|b| b.center.x), column(|b| b.center.y), column(|b| b.center.z)],
+            apex_distances: column(|b| b.apex_distance),
+            axes: [column(|b| b.axis.x), column(|b| b.axis.y), column(|b| b.axis.z)],
+            tans_squared: column(|b| b.tan_squared),
+        }
+    }
+}
+
+/// What a bound holds: a run of blocks of the next level, and how many patches or edges they have.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Held {
+    pub(crate) first: u32,
+    pub(crate) blocks: u32,
+    pub(crate) count: u32,
+}
+
+/// Bounds in blocks, of patches or of super-patches. Bound i of block b has the number 16 b + i.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bounds {
+    pub(crate) blocks: Vec<BoundBlock>,
+    /// Of each block, a bit for each bound that there is.
+    pub(crate) used: Vec<u16>,
+    /// By the number of the bound.
+    pub(crate) held: Vec<Held>,
+}
+
+impl Bounds {
+    /// Appends bounds, and what each holds, in blocks of their own.
+    pub(crate) fn push(&mut self, bounds: &[DoubleCone], held: &[Held]) -> Held {
+        let first = self.len();
+        for (bounds, held) in bounds.chunks(LANES).zip(held.chunks(LANES)) {
+            self.blocks.push(BoundBlock::new(bounds));
+            self.used.push(u16::MAX >> (LANES - bounds.len()));
+            self.held.extend(held);
+            self.held.resize(LANES * self.blocks.len(), Held::default());
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "no more bounds than edge ids")]
+        Held { first, blocks: self.len() - first, count: bounds.len() as u32 }
+    }
+
+    /// How many blocks.
+    #[expect(clippy::cast_possible_truncation, reason = "no more bounds than edge ids")]
+    pub(crate) fn len(&self) -> u32 {
+        self.blocks.len() as u32
+    }
+}
