@@ -1,8 +1,8 @@
 //! Every extractor against the definition.
 
 use drypoint_cpu::{
-    BruteForce, Contours, Extractor, FaceSigns, FaceStrips, Instructions, Statistics, StoredPlanes,
-    extract_all_wings, extract_patches,
+    Batch, BruteForce, Contours, Extractor, FaceSigns, FaceStrips, Instructions, Statistics,
+    StoredPlanes, extract_all_wings, extract_patches,
 };
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
@@ -121,7 +121,38 @@ impl Expected {
             })
         };
         let views = self.views.par_iter().enumerate().map(look);
-        views.try_reduce(Agreement::default, |a, b| Ok(a + b))
+        let agreement = views.try_reduce(Agreement::default, |a, b| Ok(a + b))?;
+        for (name, extractor) in &extractors {
+            self.compare_batch(name, extractor)?;
+        }
+        Ok(agreement)
+    }
+
+    /// A batch gives what its views give one by one, and so do all threads on one view.
+    fn compare_batch(
+        &self,
+        name: &'static str,
+        extractor: &Extractor<'_>,
+    ) -> Result<(), Box<Disagreement>> {
+        let viewpoints: Vec<Viewpoint> =
+            self.views.iter().map(|(viewpoint, _)| *viewpoint).collect();
+        let (mut edges, mut pairs) = (Batch::default(), Batch::default());
+        extractor.edges_of_batch(&viewpoints, &mut edges);
+        extractor.vertex_pairs_of_batch(&viewpoints, &mut pairs);
+        assert_eq!((edges.len(), pairs.len()), (self.views.len(), self.views.len()));
+        let (mut one, mut one_pairs) = (Contours::default(), Contours::default());
+        for (index, (viewpoint, expected)) in self.views.iter().enumerate() {
+            let viewpoint = *viewpoint;
+            let (found, statistics) = edges.view(index);
+            check(name, viewpoint, expected, &sorted(found))?;
+            assert_eq!(statistics, extractor.edges(viewpoint, &mut one), "{name}: {viewpoint:?}");
+            assert!(found == &*one, "order of {name} in a batch from {viewpoint:?}");
+            assert_eq!(extractor.edges_on_threads(viewpoint, &mut one), statistics);
+            assert!(found == &*one, "order of {name} on threads from {viewpoint:?}");
+            assert_eq!(extractor.vertex_pairs_on_threads(viewpoint, &mut one_pairs), statistics);
+            assert!(pairs.view(index) == (&*one_pairs, statistics), "{name} from {viewpoint:?}");
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,7 @@
 //! Bounds, sixteen side by side.
 
+use std::ops::Range;
+
 use drypoint_bounds::DoubleCone;
 
 use crate::faces::LANES;
@@ -36,6 +38,13 @@ pub(crate) struct Held {
     pub(crate) count: u32,
 }
 
+impl Held {
+    /// The blocks.
+    pub(crate) fn range(&self) -> Range<u32> {
+        self.first..self.first + self.blocks
+    }
+}
+
 /// Bounds in blocks, of patches or of super-patches. Bound i of block b has the number 16 b + i.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bounds {
@@ -58,6 +67,22 @@ impl Bounds {
         }
         #[expect(clippy::cast_possible_truncation, reason = "no more bounds than edge ids")]
         Held { first, blocks: self.len() - first, count: bounds.len() as u32 }
+    }
+
+    /// What the bounds of a block hold.
+    pub(crate) fn held_by(&self, block: u32) -> &[Held] {
+        &self.held[LANES * block as usize..][..LANES]
+    }
+
+    /// How many blocks of the next level those of a block hold.
+    pub(crate) fn held_blocks(&self, block: u32) -> u32 {
+        self.held_by(block).iter().map(|held| held.blocks).sum()
+    }
+
+    /// How many bounds are in these blocks.
+    pub(crate) fn count(&self, blocks: Range<u32>) -> usize {
+        let used = &self.used[blocks.start as usize..blocks.end as usize];
+        used.iter().map(|used| used.count_ones() as usize).sum()
     }
 
     /// How many blocks.

@@ -2,7 +2,10 @@
 
 use std::ops::Deref;
 
+use bytemuck::Zeroable;
+
 use crate::Statistics;
+use crate::exact::Hit;
 use crate::kernels::SLACK;
 
 /// What an extractor found, and memory for the next time: edge ids or vertex pairs.
@@ -12,9 +15,23 @@ use crate::kernels::SLACK;
 pub struct Contours<T> {
     pub(crate) found: Found<T>,
     pub(crate) scratch: Scratch,
+    pub(crate) shares: Vec<Share<T>>,
 }
 
 impl<T> Default for Contours<T> {
+    fn default() -> Self {
+        Self { found: Found::default(), scratch: Scratch::default(), shares: Vec::new() }
+    }
+}
+
+/// What one of many threads found.
+#[derive(Clone, Debug)]
+pub(crate) struct Share<T> {
+    pub(crate) found: Found<T>,
+    pub(crate) scratch: Scratch,
+}
+
+impl<T> Default for Share<T> {
     fn default() -> Self {
         Self { found: Found::default(), scratch: Scratch::default() }
     }
@@ -62,6 +79,7 @@ pub(crate) struct Scratch {
     pub(crate) survivors: Vec<u32>,
     pub(crate) bound_blocks: Vec<u32>,
     pub(crate) edge_blocks: Vec<u32>,
+    pub(crate) hits: Vec<Hit>,
 }
 
 impl Scratch {
@@ -70,11 +88,18 @@ impl Scratch {
         grow(&mut self.survivors, bounds + SLACK);
         grow(&mut self.bound_blocks, bound_blocks + SLACK);
         grow(&mut self.edge_blocks, edge_blocks + SLACK);
+        self.hits(edge_blocks);
+    }
+
+    /// Room for so many blocks, and one more.
+    pub(crate) fn hits(&mut self, blocks: usize) -> &mut [Hit] {
+        grow(&mut self.hits, blocks + 1);
+        &mut self.hits
     }
 }
 
 /// To at least so many.
-fn grow<T: bytemuck::Pod>(places: &mut Vec<T>, len: usize) {
+fn grow<T: Zeroable + Clone>(places: &mut Vec<T>, len: usize) {
     if places.len() < len {
         places.resize(len, T::zeroed());
     }

@@ -1,5 +1,8 @@
 //! Edges, sixteen side by side.
 
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
 use drypoint_mesh::Wing;
 use glam::Vec3;
 
@@ -7,7 +10,8 @@ use crate::faces::{FaceBlock, Frame, LANES, Plane, View};
 use crate::simd::Lanes;
 
 /// What a block's edges are, a bit each.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Seen {
     /// Contour edges, if they are not doubtful.
     pub(crate) contours: u16,
@@ -84,6 +88,12 @@ impl EdgePlanes {
             self.planes.push([0, 1].map(|side| FaceBlock::new(|lane| planes[lane][side])));
             self.places.push([first_place + number * LANES as u32, wings.len() as u32]);
         }
+    }
+
+    /// How many edges are in these blocks.
+    pub(crate) fn count(&self, blocks: Range<u32>) -> usize {
+        let places = &self.places[blocks.start as usize..blocks.end as usize];
+        places.iter().map(|[_, count]| *count as usize).sum()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Edges that whole numbers are not sure of.
 
+use bytemuck::{Pod, Zeroable};
 use drypoint_mesh::{Viewpoint, Wing, is_contour};
 use glam::Vec3;
 
@@ -7,7 +8,8 @@ use crate::edges::{Blocks, Seen};
 use crate::faces::LANES;
 
 /// A block, and what was seen of it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Hit {
     pub(crate) block: u32,
     pub(crate) seen: Seen,

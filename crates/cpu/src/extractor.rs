@@ -10,9 +10,10 @@ use crate::Statistics;
 use crate::bounds::{Bounds, Held};
 use crate::contours::{Contours, Found, Scratch};
 use crate::edges::{Blocks, EdgePlanes};
-use crate::exact::Exact;
+use crate::exact::{Exact, Hit};
 use crate::faces::{Frame, LANES, View};
 use crate::kernels::{Cull, Eye, Test};
+use crate::parts::Part;
 use crate::simd::{Instructions, Label, Level};
 
 /// Finds contour edges through patches, with the newest instructions of the processor.
@@ -29,30 +30,15 @@ pub struct Extractor<'a> {
     frame: Frame,
     /// The edges of each patch, then those that no patch holds.
     blocks: EdgePlanes,
-    edges: Vec<[EdgeId; LANES]>,
-    pairs: Vec<[[u32; 2]; LANES]>,
+    pub(crate) edges: Vec<[EdgeId; LANES]>,
+    pub(crate) pairs: Vec<[[u32; 2]; LANES]>,
     /// Of super-patches; they hold blocks of `bounds`.
     groups: Bounds,
     /// Of patches; they hold blocks of edges.
     bounds: Bounds,
     whole: Part,
-}
-
-/// A part of what is looked through.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Part {
-    /// Blocks of bounds of super-patches.
-    groups: Range<u32>,
-    /// How many super-patches these are.
-    super_patches: usize,
-    /// Blocks of bounds of patches that no super-patch holds.
-    bounds: Range<u32>,
-    /// How many patches these are.
-    patches: usize,
-    /// Blocks of edges that no patch holds.
-    always_tested: Range<u32>,
-    /// How many edges these have.
-    edges: usize,
+    /// The same in pieces that fit the second cache.
+    pub(crate) tiles: Vec<Part>,
 }
 
 /// A viewpoint as kernels read it.
@@ -93,16 +79,14 @@ impl<'a> Extractor<'a> {
         let always_tested = layout.push_edges(patches.always_tested());
         let whole = Part {
             groups: 0..groups.len(),
-            super_patches: cones.len(),
-            bounds: loose.first..loose.first + loose.blocks,
-            patches: loose.count as usize,
-            always_tested: always_tested.first..always_tested.first + always_tested.blocks,
-            edges: always_tested.count as usize,
+            bounds: loose.range(),
+            always_tested: always_tested.range(),
         };
         let Layout { frame, blocks, bounds, .. } = layout;
         let edges = blocks.labels(|place| patches.edge_ids()[place]);
         let pairs = blocks.labels(|place| patches.wings()[place].ends());
-        Self { patches, level, frame, blocks, edges, pairs, groups, bounds, whole }
+        let tiles = whole.tiles(&groups, &bounds);
+        Self { patches, level, frame, blocks, edges, pairs, groups, bounds, whole, tiles }
     }
 
     /// Replaces `contours` by the contour edges seen from `viewpoint`, by id: those of one patch
@@ -124,11 +108,12 @@ impl<'a> Extractor<'a> {
 
     /// The same as [`Extractor::edges`] with no patch skipped.
     pub fn all_edges(&self, viewpoint: Viewpoint, contours: &mut Contours<EdgeId>) -> Statistics {
-        contours.found.statistics =
+        let Contours { found, scratch, .. } = contours;
+        found.statistics =
             Statistics { edges_tested: self.patches.wings().len(), ..Statistics::default() };
-        let sight = self.sight(viewpoint);
-        self.test(0..self.blocks.len(), sight, &self.edges, &mut contours.found);
-        contours.found.statistics
+        let hits = scratch.hits(self.blocks.len() as usize);
+        self.test(0..self.blocks.len(), self.sight(viewpoint), &self.edges, (hits, found));
+        found.statistics
     }
 
     fn extract<T: Label>(
@@ -137,7 +122,7 @@ impl<'a> Extractor<'a> {
         labels: &[[T; LANES]],
         contours: &mut Contours<T>,
     ) -> Statistics {
-        let Contours { found, scratch } = contours;
+        let Contours { found, scratch, .. } = contours;
         found.statistics = Statistics::default();
         // For all there are, so that no later view needs more.
         found.room(LANES * self.blocks.len() as usize);
@@ -145,12 +130,12 @@ impl<'a> Extractor<'a> {
         found.statistics
     }
 
-    fn sight(&self, viewpoint: Viewpoint) -> Sight {
+    pub(crate) fn sight(&self, viewpoint: Viewpoint) -> Sight {
         Sight { viewpoint, view: self.frame.view(viewpoint), eye: Eye::new(viewpoint) }
     }
 
     /// Appends the contour edges of `part`.
-    fn look_through<T: Label>(
+    pub(crate) fn look_through<T: Label>(
         &self,
         part: &Part,
         sight: Sight,
@@ -163,7 +148,7 @@ impl<'a> Extractor<'a> {
             self.bounds.blocks.len(),
             self.blocks.len() as usize,
         ]);
-        let Scratch { survivors, bound_blocks, edge_blocks } = scratch;
+        let Scratch { survivors, bound_blocks, edge_blocks, hits } = scratch;
         let groups = self.level.run(Cull {
             numbers: part.groups.clone(),
             bounds: &self.groups,
@@ -186,12 +171,14 @@ impl<'a> Extractor<'a> {
             .zip(part.always_tested.clone())
             .for_each(|(place, block)| *place = block);
         let statistics = &mut found.statistics;
-        statistics.super_patches_tested += part.super_patches;
+        let [super_patches, loose, always_tested] =
+            part.counts(&self.groups, &self.bounds, &self.blocks);
+        statistics.super_patches_tested += super_patches;
         statistics.super_patches_accepted += groups.survivors;
-        statistics.patches_tested += groups.count + part.patches;
+        statistics.patches_tested += groups.count + loose;
         statistics.patches_accepted += patches.survivors;
-        statistics.edges_tested += patches.count + part.edges;
-        self.test(edge_blocks[..end].iter().copied(), sight, labels, found);
+        statistics.edges_tested += patches.count + always_tested;
+        self.test(edge_blocks[..end].iter().copied(), sight, labels, (hits, found));
     }
 
     /// Appends the contour edges in so many blocks of edges.
@@ -200,14 +187,14 @@ impl<'a> Extractor<'a> {
         numbers: impl ExactSizeIterator<Item = u32>,
         sight: Sight,
         labels: &[[T; LANES]],
-        found: &mut Found<T>,
+        (hits, found): (&mut [Hit], &mut Found<T>),
     ) {
         let Sight { viewpoint, view, .. } = sight;
         let (positions, wings) = (self.patches.positions(), self.patches.wings());
         let exact = Exact { positions, wings, viewpoint };
         let contours = found.room(LANES * numbers.len());
         let blocks = &self.blocks;
-        let test = Test { numbers, blocks, labels, view, exact, contours };
+        let test = Test { numbers, blocks, labels, view, exact, hits, contours };
         found.statistics.contour_edges += self.level.run(test);
     }
 }

@@ -137,6 +137,8 @@ pub(crate) struct Test<'a, N, B, T> {
     pub(crate) view: View,
     /// Decides where edges are doubtful.
     pub(crate) exact: Exact<'a>,
+    /// Gets the blocks that may have contour edges. Has room for all, and one more.
+    pub(crate) hits: &'a mut [Hit],
     /// Gets the labels, in order. Has room for those of all blocks, and [`SLACK`] more.
     pub(crate) contours: &'a mut [T],
 }
@@ -152,40 +154,30 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> usize {
-        let Self { mut numbers, blocks, labels, view, exact, contours } = self;
+        let Self { numbers, blocks, labels, view, exact, hits, contours } = self;
         let looked_at = blocks.looked_at();
+        let (mut hit, mut doubtful) = (0, 0);
+        for block in numbers {
+            let seen = B::look(looked_at, lanes, block, view);
+            // Written in any case, and over if there was nothing: that is never guessed wrong.
+            hits[hit] = Hit { block, seen };
+            hit += usize::from(seen.is_any());
+            doubtful |= seen.doubtful;
+        }
+        let hits = &mut hits[..hit];
+        if doubtful != 0 {
+            exact.decide(blocks, hits);
+        }
         let labels = &labels[..blocks.len() as usize];
         let mut count = 0;
-        let mut hits = [Hit::default(); RUN];
-        loop {
-            let (mut run, mut hit, mut doubtful) = (0, 0, 0);
-            for block in numbers.by_ref().take(RUN) {
-                let seen = B::look(looked_at, lanes, block, view);
-                // Written in any case, and over if there was nothing.
-                hits[hit % RUN] = Hit { block, seen };
-                hit += usize::from(seen.is_any());
-                doubtful |= seen.doubtful;
-                run += 1;
-            }
-            let hits = &mut hits[..hit];
-            if doubtful != 0 {
-                exact.decide(blocks, hits);
-            }
-            for Hit { block, seen } in hits {
-                let mask = seen.contours;
-                T::compact(lanes, &labels[*block as usize], mask, room(contours, count));
-                count += mask.count_ones() as usize;
-            }
-            if run < RUN {
-                return count;
-            }
+        for Hit { block, seen } in hits {
+            let mask = seen.contours;
+            T::compact(lanes, &labels[*block as usize], mask, room(contours, count));
+            count += mask.count_ones() as usize;
         }
+        count
     }
 }
-
-/// Blocks that are looked at before the labels of those with contour edges are written: whether a
-/// block has any is so never guessed.
-const RUN: usize = 256;
 
 /// The next sixteen places.
 #[inline(always)]

@@ -36,6 +36,7 @@
 //! assert!(statistics.edges_tested < patches.wings().len() / 2, "most patches are culled");
 //! ```
 
+mod batch;
 mod bounds;
 mod brute_force;
 mod contours;
@@ -44,11 +45,14 @@ mod exact;
 mod extractor;
 mod faces;
 mod kernels;
+mod parts;
 mod patches;
 mod simd;
 mod statistics;
 mod strips;
+mod threads;
 
+pub use batch::Batch;
 pub use brute_force::{BruteForce, FaceSigns, FaceStrips, StoredPlanes, extract_naively};
 pub use contours::Contours;
 pub use extractor::Extractor;

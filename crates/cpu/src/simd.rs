@@ -139,7 +139,7 @@ pub(crate) trait Lanes: Copy {
 }
 
 /// What is written of an edge.
-pub(crate) trait Label: Pod {
+pub(crate) trait Label: Pod + Send + Sync {
     fn compact<L: Lanes>(lanes: L, from: &[Self; LANES], mask: u16, to: &mut [Self; LANES]);
 }
 

@@ -16,3 +16,14 @@ pub struct Statistics {
     /// Wings found to be contour edges. A non-manifold edge counts once for each of its wings.
     pub contour_edges: usize,
 }
+
+impl std::ops::AddAssign for Statistics {
+    fn add_assign(&mut self, other: Self) {
+        self.super_patches_tested += other.super_patches_tested;
+        self.super_patches_accepted += other.super_patches_accepted;
+        self.patches_tested += other.patches_tested;
+        self.patches_accepted += other.patches_accepted;
+        self.edges_tested += other.edges_tested;
+        self.contour_edges += other.contour_edges;
+    }
+}

@@ -90,7 +90,7 @@ impl<'mesh, B: Blocks + Default> EveryEdge<'mesh, B> {
     }
 
     fn extract(&self, viewpoint: Viewpoint, contours: &mut Contours<EdgeId>) -> Statistics {
-        let found = &mut contours.found;
+        let Contours { found, scratch, .. } = contours;
         found.statistics = Statistics { edges_tested: self.wings.len(), ..Statistics::default() };
         let (positions, wings) = (self.mesh.positions(), &self.wings[..]);
         let count = self.level.run(Test {
@@ -99,6 +99,7 @@ impl<'mesh, B: Blocks + Default> EveryEdge<'mesh, B> {
             labels: &self.labels,
             view: self.frame.view(viewpoint),
             exact: Exact { positions, wings, viewpoint },
+            hits: scratch.hits(self.labels.len()),
             contours: found.room(LANES * self.labels.len()),
         });
         found.statistics.contour_edges = count;

@@ -5,18 +5,19 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use drypoint_cpu::{
-    BruteForce, Extractor, FaceSigns, FaceStrips, Instructions, StoredPlanes, extract_all_wings,
-    extract_naively, extract_patches,
+    Batch, BruteForce, Extractor, FaceSigns, FaceStrips, Instructions, StoredPlanes,
+    extract_all_wings, extract_naively, extract_patches,
 };
 use drypoint_fusion::{CostModel, FusionParams, Levels, PatchSet, fuse};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint};
 use drypoint_tests::compare::compare;
 use drypoint_tests::viewpoints;
+use rayon::ThreadPoolBuilder;
 
 use crate::quartiles;
 
-/// An extractor, by name: looks from one viewpoint.
-type Contender<'a> = (String, Box<dyn FnMut(Viewpoint) + 'a>);
+/// An extractor, by name: looks from all viewpoints.
+type Contender<'a> = (String, Box<dyn FnMut(&[Viewpoint]) + 'a>);
 
 /// Prints the median time of a view for each, and how many times as fast as the first it is.
 pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
@@ -36,6 +37,7 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
     let start = Instant::now();
     black_box(Extractor::new(&patches));
     println!("  laid out in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
+    let newest = Extractor::new(&patches);
     let mut contenders = exact_ones(mesh, &adjacency, &patches);
     for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
         contenders.extend(brute_forces(mesh, &adjacency, instructions));
@@ -46,13 +48,21 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
         let extractor = Extractor::with(&two_levels, instructions);
         contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
     }
+    contenders.push(contender("patches, ids, newest, one view on all threads", |view, found| {
+        newest.edges_on_threads(view, found);
+    }));
+    for threads in [1, rayon::current_num_threads()] {
+        contenders.extend(in_batches(&newest, threads)?);
+    }
+    let exact = viewpoints.clone();
+    let (name, mut look) = contender("patches, ids, newest, viewpoints in f64", |view, found| {
+        newest.edges(view, found);
+    });
+    contenders.push((name, Box::new(move |_| look(&exact))));
     // As cameras have them.
     let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
     let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
-    println!("  from viewpoints in f32:");
     report(&mut contenders, &rounded, rounds);
-    println!("  from viewpoints in f64:");
-    report(&mut contenders, &viewpoints, rounds);
     Ok(())
 }
 
@@ -64,9 +74,11 @@ where
     T: Default + 'a,
 {
     let mut found = T::default();
-    let look = move |viewpoint| {
-        look(viewpoint, &mut found);
-        black_box(&found);
+    let look = move |viewpoints: &[Viewpoint]| {
+        for &viewpoint in viewpoints {
+            look(viewpoint, &mut found);
+            black_box(&found);
+        }
     };
     (name.into(), Box::new(look))
 }
@@ -137,14 +149,38 @@ fn through_patches<'a>(extractor: Extractor<'a>, name: &str) -> [Contender<'a>; 
     ]
 }
 
-/// Times all in turn, again and again, each after a pass that brings its own data into the caches.
+/// All viewpoints at once.
+fn in_batches<'a>(
+    extractor: &'a Extractor<'a>,
+    threads: usize,
+) -> Result<[Contender<'a>; 2], String> {
+    let pool = || {
+        let builder = ThreadPoolBuilder::new().num_threads(threads);
+        builder.build().map_err(|error| error.to_string())
+    };
+    let (for_edges, for_pairs) = (pool()?, pool()?);
+    let (mut edges, mut pairs) = (Batch::default(), Batch::default());
+    let look_for_edges = move |viewpoints: &[Viewpoint]| {
+        for_edges.install(|| extractor.edges_of_batch(viewpoints, &mut edges));
+    };
+    let look_for_pairs = move |viewpoints: &[Viewpoint]| {
+        for_pairs.install(|| extractor.vertex_pairs_of_batch(viewpoints, &mut pairs));
+    };
+    Ok([
+        (format!("batch, ids, newest, {threads} threads"), Box::new(look_for_edges)),
+        (format!("batch, vertex pairs, newest, {threads} threads"), Box::new(look_for_pairs)),
+    ])
+}
+
+/// Times all in turn, again and again, each after some views that bring its own data into the caches.
 fn report(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u32) {
     let mut times = vec![Vec::new(); contenders.len()];
+    let some: Vec<Viewpoint> = viewpoints.iter().copied().step_by(5).collect();
     for _ in 0..rounds {
         for ((_, look), times) in contenders.iter_mut().zip(&mut times) {
-            viewpoints.iter().for_each(|&viewpoint| look(viewpoint));
+            look(&some);
             let start = Instant::now();
-            viewpoints.iter().for_each(|&viewpoint| look(viewpoint));
+            look(viewpoints);
             times.push(1e6 * start.elapsed().as_secs_f64() / viewpoints.len().max(1) as f64);
         }
     }
