@@ -121,7 +121,9 @@ impl Expected {
             })
         };
         let views = self.views.par_iter().enumerate().map(look);
-        let agreement = views.try_reduce(Agreement::default, |a, b| Ok(a + b))?;
+        let agreement: Result<_, Box<Disagreement>> =
+            views.try_reduce(Agreement::default, |a, b| Ok(a + b));
+        let agreement = agreement?;
         for (name, extractor) in &extractors {
             self.compare_batch(name, extractor)?;
         }
