@@ -10,7 +10,8 @@ use crate::kernels::SLACK;
 
 /// What an extractor found, and memory for the next time: edge ids or vertex pairs.
 ///
-/// It grows once to the places of all edges, and never again for the same extractor.
+/// It grows once to the places of all edges, and never again for the same extractor; what threads find
+/// of one view, to what the views need.
 #[derive(Clone, Debug)]
 pub struct Contours<T> {
     pub(crate) found: Found<T>,

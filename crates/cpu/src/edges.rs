@@ -28,7 +28,11 @@ impl Seen {
 }
 
 /// Edges in blocks of up to sixteen, each edge at a place among all.
-pub(crate) trait Blocks {
+pub(crate) trait Blocks: Default {
+    /// Appends the edges of `wings`, which have the places from `first_place` on, in blocks of their
+    /// own. Those of one face only are never contour edges.
+    fn push(&mut self, frame: &Frame, positions: &[Vec3], wings: &[Wing], first_place: u32);
+
     /// What is looked at of every block; slices, so that a loop needs not ask for them again.
     type LookedAt<'a>: Copy
     where
@@ -66,16 +70,19 @@ pub(crate) struct EdgePlanes {
 }
 
 impl EdgePlanes {
-    /// Appends the edges of `wings`, which have the places from `first_place` on, in blocks of their
-    /// own. An edge of one face only is as if it had that on both sides, and so are lanes without one.
+    /// How many edges are in these blocks.
+    pub(crate) fn count(&self, blocks: Range<u32>) -> usize {
+        let places = &self.places[blocks.start as usize..blocks.end as usize];
+        places.iter().map(|[_, count]| *count as usize).sum()
+    }
+}
+
+impl Blocks for EdgePlanes {
+    type LookedAt<'a> = &'a [[FaceBlock; 2]];
+
+    /// An edge of one face only is as if it had that on both sides, and so are lanes without one. Linear.
     #[expect(clippy::cast_possible_truncation, reason = "an edge has a u32 as its id")]
-    pub(crate) fn push(
-        &mut self,
-        frame: &Frame,
-        positions: &[Vec3],
-        wings: &[Wing],
-        first_place: u32,
-    ) {
+    fn push(&mut self, frame: &Frame, positions: &[Vec3], wings: &[Wing], first_place: u32) {
         let plane = |face: [u32; 3]| frame.plane(face.map(|vertex| positions[vertex as usize]));
         for (wings, number) in wings.chunks(LANES).zip(0..) {
             let lane = |lane: usize| {
@@ -89,16 +96,6 @@ impl EdgePlanes {
             self.places.push([first_place + number * LANES as u32, wings.len() as u32]);
         }
     }
-
-    /// How many edges are in these blocks.
-    pub(crate) fn count(&self, blocks: Range<u32>) -> usize {
-        let places = &self.places[blocks.start as usize..blocks.end as usize];
-        places.iter().map(|[_, count]| *count as usize).sum()
-    }
-}
-
-impl Blocks for EdgePlanes {
-    type LookedAt<'a> = &'a [[FaceBlock; 2]];
 
     #[inline(always)]
     fn looked_at(&self) -> &[[FaceBlock; 2]] {

@@ -20,9 +20,11 @@ use crate::simd::{Instructions, Label, Level};
 ///
 /// [`extract_patches`](crate::extract_patches) finds the same edges. Here planes are whole numbers of
 /// 16 bits, laid out once, sixteen edges side by side; where these are not sure of a sign, at faces seen
-/// edge-on, the exact predicate is asked. So the answer is that of the definition, in the same order with any [`Instructions`].
+/// edge-on, the exact predicate is asked. So the answer is that of the definition, in the same order
+/// with any [`Instructions`].
 ///
-/// Some 35 bytes for each edge, beside the patches themselves.
+/// 28.5 bytes for each place in a block of sixteen edges, beside the patches themselves: a patch's last
+/// block may have fewer.
 #[derive(Clone, Debug)]
 pub struct Extractor<'a> {
     patches: &'a PatchSet,
@@ -79,13 +81,16 @@ impl<'a> Extractor<'a> {
         let always_tested = layout.push_edges(patches.always_tested());
         let whole = Part {
             groups: 0..groups.len(),
+            super_patches: cones.len(),
             bounds: loose.range(),
+            patches: loose.count as usize,
             always_tested: always_tested.range(),
+            edges: always_tested.count as usize,
         };
         let Layout { frame, blocks, bounds, .. } = layout;
         let edges = blocks.labels(|place| patches.edge_ids()[place]);
         let pairs = blocks.labels(|place| patches.wings()[place].ends());
-        let tiles = whole.tiles(&groups, &bounds);
+        let tiles = whole.tiles(&groups, &bounds, &blocks);
         Self { patches, level, frame, blocks, edges, pairs, groups, bounds, whole, tiles }
     }
 
@@ -171,13 +176,11 @@ impl<'a> Extractor<'a> {
             .zip(part.always_tested.clone())
             .for_each(|(place, block)| *place = block);
         let statistics = &mut found.statistics;
-        let [super_patches, loose, always_tested] =
-            part.counts(&self.groups, &self.bounds, &self.blocks);
-        statistics.super_patches_tested += super_patches;
+        statistics.super_patches_tested += part.super_patches;
         statistics.super_patches_accepted += groups.survivors;
-        statistics.patches_tested += groups.count + loose;
+        statistics.patches_tested += groups.count + part.patches;
         statistics.patches_accepted += patches.survivors;
-        statistics.edges_tested += patches.count + always_tested;
+        statistics.edges_tested += patches.count + part.edges;
         self.test(edge_blocks[..end].iter().copied(), sight, labels, (hits, found));
     }
 

@@ -1,15 +1,24 @@
 //! Contour extraction on the CPU.
 //!
-//! Every extractor gives the edges of the definition, [`drypoint_mesh::contour_edges`], whatever the
-//! processor. Output goes to memory that the caller keeps, and its order is fixed.
+//! Every extractor but [`extract_naively`] gives the edges of the definition,
+//! [`drypoint_mesh::contour_edges`], on any processor and any number of threads. Output goes to memory
+//! that the caller keeps, in an order that is the same on all of them.
 //!
 //! | | looks at | for |
 //! |---|---|---|
-//! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the newest instructions | every frame |
+//! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the newest instructions | every frame: microseconds for a mesh of 100,000 edges |
+//! | [`Extractor::edges_of_batch`], [`Extractor::vertex_pairs_of_batch`] | the same from many viewpoints, piece by piece, on all threads | many views of a mesh that does not fit the second cache, or many threads |
+//! | [`Extractor::edges_on_threads`], [`Extractor::vertex_pairs_on_threads`] | the same from one viewpoint, on all threads | a frame of a mesh of a million edges or more |
 //! | [`Extractor::all_edges`] | every edge, with the same instructions | measuring what patches gain |
+//! | [`FaceStrips`], [`StoredPlanes`], [`FaceSigns`] | every edge, with the same instructions | a mesh without patches that is seen often; measuring |
 //! | [`extract_patches`] | the same patches and edges, with exact predicates throughout, nothing laid out | a single view |
 //! | [`BruteForce`] | every face, then every edge, with exact predicates | a mesh without patches |
 //! | [`extract_all_wings`] | every edge, with exact predicates | a patch file without its mesh |
+//! | [`extract_naively`] | every edge, in f32: inexact | measuring |
+//!
+//! Figures are in `docs/measurements.md`. Patches for an [`Extractor`] are best made with
+//! [`CostModel::CPU_SIMD`](drypoint_fusion::CostModel::CPU_SIMD). The example `orbit` extracts frame by
+//! frame.
 //!
 //! ```
 //! use drypoint_cpu::{BruteForce, Contours, Extractor};

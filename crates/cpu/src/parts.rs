@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, Held};
 use crate::edges::EdgePlanes;
 
 /// Blocks of edges in a tile, at most, unless one block of bounds holds more: half a megabyte of planes
@@ -12,43 +12,44 @@ const TILE: u32 = 1536;
 /// A part of all patches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
-    /// Blocks of bounds of super-patches.
+    /// Blocks of bounds of super-patches, and how many these are.
     pub(crate) groups: Range<u32>,
-    /// Blocks of bounds of patches that no super-patch holds.
+    pub(crate) super_patches: usize,
+    /// Blocks of bounds of patches that no super-patch holds, and how many these are.
     pub(crate) bounds: Range<u32>,
-    /// Blocks of edges that no patch holds.
+    pub(crate) patches: usize,
+    /// Blocks of edges that no patch holds, and how many edges these are.
     pub(crate) always_tested: Range<u32>,
+    pub(crate) edges: usize,
 }
 
 impl Part {
-    /// In tiles of about the same size, in order.
-    pub(crate) fn tiles(&self, groups: &Bounds, bounds: &Bounds) -> Vec<Self> {
-        let blocks_of_patches =
-            |range: Range<u32>| range.map(|block| bounds.held_blocks(block)).sum::<u32>();
-        let of_groups = cut(self.groups.clone(), |block| {
-            groups.held_by(block).iter().map(|held| blocks_of_patches(held.range())).sum()
-        });
-        let of_patches = cut(self.bounds.clone(), |block| bounds.held_blocks(block));
-        let of_edges = cut(self.always_tested.clone(), |_| 1);
-        let of_groups = of_groups.into_iter().map(|groups| Self { groups, ..Self::default() });
-        let of_patches = of_patches.into_iter().map(|bounds| Self { bounds, ..Self::default() });
-        let of_edges =
-            of_edges.into_iter().map(|always_tested| Self { always_tested, ..Self::default() });
-        of_groups.chain(of_patches).chain(of_edges).collect()
+    fn of_groups(blocks: Range<u32>, groups: &Bounds) -> Self {
+        Self { super_patches: groups.count(blocks.clone()), groups: blocks, ..Self::default() }
     }
 
-    /// How many super-patches it has, patches that none of these holds, and edges that no patch holds.
-    pub(crate) fn counts(
-        &self,
-        groups: &Bounds,
-        bounds: &Bounds,
-        blocks: &EdgePlanes,
-    ) -> [usize; 3] {
-        [
-            groups.count(self.groups.clone()),
-            bounds.count(self.bounds.clone()),
-            blocks.count(self.always_tested.clone()),
-        ]
+    fn of_patches(blocks: Range<u32>, bounds: &Bounds) -> Self {
+        Self { patches: bounds.count(blocks.clone()), bounds: blocks, ..Self::default() }
+    }
+
+    fn of_edges(blocks: Range<u32>, edges: &EdgePlanes) -> Self {
+        Self { edges: edges.count(blocks.clone()), always_tested: blocks, ..Self::default() }
+    }
+
+    /// In tiles of about the same size, in order.
+    pub(crate) fn tiles(&self, groups: &Bounds, bounds: &Bounds, edges: &EdgePlanes) -> Vec<Self> {
+        let in_group = |block: u32| {
+            let patches = groups.held_by(block).iter().flat_map(Held::range);
+            patches.map(|block| bounds.held_blocks(block)).sum()
+        };
+        let of_groups = cut(self.groups.clone(), in_group).into_iter();
+        let of_patches = cut(self.bounds.clone(), |block| bounds.held_blocks(block)).into_iter();
+        let of_edges = cut(self.always_tested.clone(), |_| 1).into_iter();
+        of_groups
+            .map(|blocks| Self::of_groups(blocks, groups))
+            .chain(of_patches.map(|blocks| Self::of_patches(blocks, bounds)))
+            .chain(of_edges.map(|blocks| Self::of_edges(blocks, edges)))
+            .collect()
     }
 }
 

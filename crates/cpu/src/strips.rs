@@ -27,17 +27,22 @@ pub(crate) struct Strips {
 }
 
 impl Strips {
-    /// Lays out the edges of `wings`, which have the places from `first_place` on, in blocks of their
-    /// own. Those of one face only are left out: they are never contour edges.
-    ///
-    /// Takes the time of sorting them.
-    pub(crate) fn push(
-        &mut self,
-        frame: &Frame,
-        positions: &[Vec3],
-        wings: &[Wing],
-        first_place: u32,
-    ) {
+    fn finish(&mut self, block: &mut Block) {
+        if !block.planes.is_empty() {
+            let planes = &block.planes;
+            self.faces.push(FaceBlock::new(|lane| planes[lane.min(planes.len() - 1)]));
+            self.links.push(block.links);
+            self.places.push(block.places);
+            *block = Block::default();
+        }
+    }
+}
+
+impl Blocks for Strips {
+    type LookedAt<'a> = (&'a [FaceBlock], &'a [u16]);
+
+    /// Takes the time of sorting the faces.
+    fn push(&mut self, frame: &Frame, positions: &[Vec3], wings: &[Wing], first_place: u32) {
         let graph = Graph::new(wings);
         let plane = |face: u32, is_turned: bool| {
             let corners = graph.faces[face as usize].map(|vertex| positions[vertex as usize]);
@@ -69,20 +74,6 @@ impl Strips {
         }
         self.finish(&mut block);
     }
-
-    fn finish(&mut self, block: &mut Block) {
-        if !block.planes.is_empty() {
-            let planes = &block.planes;
-            self.faces.push(FaceBlock::new(|lane| planes[lane.min(planes.len() - 1)]));
-            self.links.push(block.links);
-            self.places.push(block.places);
-            *block = Block::default();
-        }
-    }
-}
-
-impl Blocks for Strips {
-    type LookedAt<'a> = (&'a [FaceBlock], &'a [u16]);
 
     #[inline(always)]
     fn looked_at(&self) -> (&[FaceBlock], &[u16]) {

@@ -9,9 +9,8 @@ use crate::simd::Label;
 use crate::{Extractor, Statistics};
 
 impl Extractor<'_> {
-    /// The same as [`Extractor::edges`], on all threads of the current rayon pool. Pays for meshes that
-    /// do not fit the second cache, from some million edges on; below, the threads' coming together
-    /// takes longer than the extraction.
+    /// The same as [`Extractor::edges`], on all threads of the current rayon pool. Pays where a view takes
+    /// much longer than it takes threads to come together, some ten microseconds: for large meshes.
     pub fn edges_on_threads(
         &self,
         viewpoint: Viewpoint,

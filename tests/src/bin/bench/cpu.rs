@@ -33,11 +33,12 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
     };
     let params = FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::DEFAULT };
     let patches = fused(params)?;
+    let by_paper = fused(FusionParams::DEFAULT)?;
     let two_levels = fused(FusionParams { levels: Levels::Two, ..params })?;
     let start = Instant::now();
     black_box(Extractor::new(&patches));
     println!("  laid out in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-    let newest = Extractor::new(&patches);
+    let [newest, of_default] = [&patches, &by_paper].map(Extractor::new);
     let mut contenders = exact_ones(mesh, &adjacency, &patches);
     for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
         contenders.extend(brute_forces(mesh, &adjacency, instructions));
@@ -54,6 +55,12 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
     for threads in [1, rayon::current_num_threads()] {
         contenders.extend(in_batches(&newest, threads)?);
     }
+    contenders.push(contender(
+        "patches, ids, newest, made for the paper's costs",
+        |view, found| {
+            of_default.edges(view, found);
+        },
+    ));
     let exact = viewpoints.clone();
     let (name, mut look) = contender("patches, ids, newest, viewpoints in f64", |view, found| {
         newest.edges(view, found);

@@ -1,0 +1,77 @@
+//! Extracts contours frame by frame along an orbit, and says how long that takes.
+//!
+//! ```sh
+//! cargo run --release -p drypoint-cpu --example orbit -- bunny.obj
+//! ```
+//!
+//! Without a file, around a built-in shape. One turn of 720 frames, half a degree each, at three times
+//! the size of the mesh and a little above its middle.
+#![allow(clippy::print_stdout, reason = "the report is what this program is for")]
+
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use drypoint_cpu::{Contours, Extractor, Instructions};
+use drypoint_fusion::{CostModel, FusionParams, fuse};
+use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, io, shapes};
+use glam::DVec3;
+
+const FRAMES: usize = 720;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mesh = match std::env::args().nth(1) {
+        Some(path) => io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh,
+        None => shapes::bumpy_sphere(70_000),
+    };
+
+    // Once for each mesh, or loaded from a patch file.
+    let adjacency = MeshAdjacency::new(&mesh);
+    let params = FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::FAST };
+    let go_on = |_| ControlFlow::Continue(());
+    let patches = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)?;
+    let extractor = Extractor::new(&patches);
+
+    let (least, most) = mesh
+        .positions()
+        .iter()
+        .map(|position| position.as_dvec3())
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(least, most), position| {
+            (least.min(position), most.max(position))
+        });
+    if !least.is_finite() {
+        return Err("there is nothing to look at: the mesh has no vertices".into());
+    }
+    let (center, distance) = (0.5 * (least + most), 1.5 * (most - least).max_element());
+    let viewpoint = |frame: usize| {
+        let angle = TAU * frame as f64 / FRAMES as f64;
+        let towards = DVec3::new(angle.cos(), 0.3, angle.sin());
+        // As cameras have it.
+        Viewpoint::at((center + distance * towards).as_vec3().as_dvec3())
+    };
+
+    // Once for each frame. The memory is that of the frame before.
+    let mut contours = Contours::default();
+    let (mut times, mut edges) = (Vec::with_capacity(FRAMES), 0);
+    for frame in 0..FRAMES {
+        let start = Instant::now();
+        extractor.vertex_pairs(viewpoint(frame), &mut contours);
+        times.push(1e6 * start.elapsed().as_secs_f64());
+        edges += contours.len();
+    }
+
+    let first = times[0];
+    times.sort_unstable_by(f64::total_cmp);
+    println!(
+        "{} of {} edges are contours on average; {:?}",
+        edges / FRAMES,
+        patches.wings().len(),
+        Instructions::newest()
+    );
+    println!(
+        "µs per view: median {:.1}, nine in ten below {:.1}, first {first:.1}",
+        times[FRAMES / 2],
+        times[FRAMES * 9 / 10]
+    );
+    Ok(())
+}
