@@ -4,7 +4,7 @@
 //! cargo run --release -p drypoint-cpu --example orbit -- bunny.obj
 //! ```
 //!
-//! Without a file, around a built-in shape. One turn of 720 frames, half a degree each, at three times
+//! A number in place of the file is that of the faces of a built-in shape. One turn of 720 frames, half a degree each, at three times
 //! the size of the mesh and a little above its middle.
 #![allow(clippy::print_stdout, reason = "the report is what this program is for")]
 
@@ -20,9 +20,10 @@ use glam::DVec3;
 const FRAMES: usize = 720;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mesh = match std::env::args().nth(1) {
-        Some(path) => io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh,
-        None => shapes::bumpy_sphere(70_000),
+    let argument = std::env::args().nth(1).unwrap_or("70000".into());
+    let mesh = match argument.parse() {
+        Ok(faces) => shapes::bumpy_sphere(faces),
+        Err(_) => io::read(argument.as_ref()).map_err(|error| format!("{argument}: {error}"))?.mesh,
     };
 
     // Once for each mesh, or loaded from a patch file.
@@ -52,26 +53,44 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Once for each frame. The memory is that of the frame before.
     let mut contours = Contours::default();
-    let (mut times, mut edges) = (Vec::with_capacity(FRAMES), 0);
-    for frame in 0..FRAMES {
-        let start = Instant::now();
+    let mut edges = 0;
+    let times = timed(|frame| {
         extractor.vertex_pairs(viewpoint(frame), &mut contours);
-        times.push(1e6 * start.elapsed().as_secs_f64());
         edges += contours.len();
-    }
-
-    let first = times[0];
-    times.sort_unstable_by(f64::total_cmp);
+    });
     println!(
         "{} of {} edges are contours on average; {:?}",
         edges / FRAMES,
         patches.wings().len(),
         Instructions::newest()
     );
-    println!(
-        "µs per view: median {:.1}, nine in ten below {:.1}, first {first:.1}",
-        times[FRAMES / 2],
-        times[FRAMES * 9 / 10]
-    );
+    report("one thread", &times);
+
+    // Not worth it but for meshes of millions of edges.
+    let times = timed(|frame| {
+        extractor.vertex_pairs_on_threads(viewpoint(frame), &mut contours);
+    });
+    report("all threads", &times);
     Ok(())
+}
+
+/// Microseconds for each frame.
+fn timed(mut extract: impl FnMut(usize)) -> Vec<f64> {
+    let time = |frame| {
+        let start = Instant::now();
+        extract(frame);
+        1e6 * start.elapsed().as_secs_f64()
+    };
+    (0..FRAMES).map(time).collect()
+}
+
+fn report(name: &str, times: &[f64]) {
+    let mut sorted = times.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    println!(
+        "{name}: µs per view, median {:.1}, nine in ten below {:.1}, first {:.1}",
+        sorted[FRAMES / 2],
+        sorted[FRAMES * 9 / 10],
+        times[0]
+    );
 }

@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the newest instructions | every frame: microseconds for a mesh of 100,000 edges |
 //! | [`Extractor::edges_of_batch`], [`Extractor::vertex_pairs_of_batch`] | the same from many viewpoints, piece by piece, on all threads | many views of a mesh that does not fit the second cache, or many threads |
-//! | [`Extractor::edges_on_threads`], [`Extractor::vertex_pairs_on_threads`] | the same from one viewpoint, on all threads | a frame of a mesh of a million edges or more |
+//! | [`Extractor::edges_on_threads`], [`Extractor::vertex_pairs_on_threads`] | the same from one viewpoint, on all threads | a frame of a mesh of several million edges |
 //! | [`Extractor::all_edges`] | every edge, with the same instructions | measuring what patches gain |
 //! | [`FaceStrips`], [`StoredPlanes`], [`FaceSigns`] | every edge, with the same instructions | a mesh without patches that is seen often; measuring |
 //! | [`extract_patches`] | the same patches and edges, with exact predicates throughout, nothing laid out | a single view |

@@ -10,7 +10,8 @@ use crate::{Extractor, Statistics};
 
 impl Extractor<'_> {
     /// The same as [`Extractor::edges`], on all threads of the current rayon pool. Pays where a view takes
-    /// much longer than it takes threads to come together, some ten microseconds: for large meshes.
+    /// much longer than it takes threads to come together: on two of them, a mesh of a million edges takes
+    /// longer so, and one of three million less.
     pub fn edges_on_threads(
         &self,
         viewpoint: Viewpoint,
