@@ -41,9 +41,9 @@ impl CostModel {
     /// predicates make an edge test dear.
     pub const CPU_SCALAR: Self = Self { patch_test: 0.13, accepted_patch: 5.0, ..Self::PAPER };
 
-    /// `drypoint-cpu`'s `Extractor`, as measured on the bunny with AVX-512: a patch test takes as long as
-    /// two edges in a full block of 16. A survivor's last block is half empty on average, which is most
-    /// of t_A; counted so, and not by whole blocks, it lets edges move from patch to patch one by one.
+    /// `drypoint-cpu`'s `Extractor`, found by trying on the bunny and the dragon with AVX-512. Most of t_A
+    /// is a survivor's last block of 16 edges, which is half empty on average; counted so, and not by
+    /// whole blocks, it lets edges move from patch to patch one by one.
     pub const CPU_SIMD: Self = Self { patch_test: 2.0, accepted_patch: 6.0, ..Self::PAPER };
 
     /// A compute shader with workgroups of 32, one per block of a survivor.
