@@ -105,8 +105,8 @@ impl Blocks for EdgePlanes {
     #[inline(always)]
     fn look<L: Lanes>(planes: &[[FaceBlock; 2]], lanes: L, block: u32, view: View) -> Seen {
         let [left, right] = &planes[block as usize];
-        let (left, right) = (left.sides(lanes, view), right.sides(lanes, view));
-        Seen { contours: left.back ^ right.back, doubtful: left.doubtful | right.doubtful }
+        let heights = [left.heights(lanes, view), right.heights(lanes, view)];
+        Seen { contours: lanes.differ(heights), doubtful: lanes.any_within(heights, view.margin) }
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "a lane")]

@@ -49,7 +49,7 @@ pub(crate) struct View {
     /// x and y, then z and w.
     pairs: [[i16; 2]; 2],
     /// A product of more than that, or less than minus that, has the sign of the plane.
-    margin: i32,
+    pub(crate) margin: i32,
 }
 
 /// What a viewpoint sees of the faces of a block, a bit each.
@@ -72,8 +72,14 @@ impl FaceBlock {
 
     #[inline(always)]
     pub(crate) fn sides<L: Lanes>(&self, lanes: L, view: View) -> Sides {
-        let heights = lanes.dot([&self.xy, &self.zd], view.pairs);
+        let heights = self.heights(lanes, view);
         Sides { back: lanes.negative(heights), doubtful: lanes.within(heights, view.margin) }
+    }
+
+    /// P · Q.
+    #[inline(always)]
+    pub(crate) fn heights<L: Lanes>(&self, lanes: L, view: View) -> L::Wholes {
+        lanes.dot([&self.xy, &self.zd], view.pairs)
     }
 }
 

@@ -109,6 +109,10 @@ pub(crate) trait Lanes: Copy {
     fn negative(self, a: Self::Wholes) -> u16;
     /// Mask of |a| < b or |a| = b; b is above 0 and below 2³¹ − 1.
     fn within(self, a: Self::Wholes, b: i32) -> u16;
+    /// Mask of where one of both is below 0, and the other is not.
+    fn differ(self, a: [Self::Wholes; 2]) -> u16;
+    /// Mask of where one of both at least is [`Lanes::within`].
+    fn any_within(self, a: [Self::Wholes; 2], b: i32) -> u16;
 
     /// Moves the words that `mask` has to the front of `to`, in order; what is behind them there
     /// may be overwritten.

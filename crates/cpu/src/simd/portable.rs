@@ -36,6 +36,13 @@ impl Portable {
     }
 }
 
+/// All bits of those that are [`Lanes::within`].
+#[inline(always)]
+fn are_within(a: [i32x4; 4], b: i32) -> [i32x4; 4] {
+    let (above, below) = (i32x4::splat(-b - 1), i32x4::splat(b + 1));
+    a.map(|a| a.cmp_gt(above) & a.cmp_lt(below))
+}
+
 impl Lanes for Portable {
     type Reals = [f32x4; 4];
     type Wholes = [i32x4; 4];
@@ -86,9 +93,18 @@ impl Lanes for Portable {
 
     #[inline(always)]
     fn within(self, a: Self::Wholes, b: i32) -> u16 {
-        let (above, below) = (i32x4::splat(-b - 1), i32x4::splat(b + 1));
-        let is_within = a.map(|a| a.cmp_gt(above) & a.cmp_lt(below));
-        self.negative(is_within)
+        self.negative(are_within(a, b))
+    }
+
+    #[inline(always)]
+    fn differ(self, [a, b]: [Self::Wholes; 2]) -> u16 {
+        self.negative(std::array::from_fn(|i| a[i] ^ b[i]))
+    }
+
+    #[inline(always)]
+    fn any_within(self, a: [Self::Wholes; 2], b: i32) -> u16 {
+        let [first, second] = a.map(|a| are_within(a, b));
+        self.negative(std::array::from_fn(|i| first[i] | second[i]))
     }
 
     #[inline(always)]

@@ -138,6 +138,24 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
+    fn differ(self, [a, b]: [Self::Wholes; 2]) -> u16 {
+        self.negative([
+            self.avx2._mm256_xor_si256(a[0], b[0]),
+            self.avx2._mm256_xor_si256(a[1], b[1]),
+        ])
+    }
+
+    #[inline(always)]
+    fn any_within(self, a: [Self::Wholes; 2], b: i32) -> u16 {
+        let least = |i: usize| {
+            let (first, second) =
+                (self.avx2._mm256_abs_epi32(a[0][i]), self.avx2._mm256_abs_epi32(a[1][i]));
+            self.avx2._mm256_min_epu32(first, second)
+        };
+        self.within([least(0), least(1)], b)
+    }
+
+    #[inline(always)]
     fn compact_words(self, from: &[u32; LANES], mask: u16, to: &mut [u32; LANES]) {
         let [low, high]: [[u32; 8]; 2] = cast(*from);
         let [first, second] = mask.to_le_bytes();
@@ -217,6 +235,18 @@ impl Lanes for V4 {
     fn within(self, a: Self::Wholes, b: i32) -> u16 {
         let b = self.avx512f._mm512_set1_epi32(b);
         self.avx512f._mm512_cmple_epu32_mask(self.avx512f._mm512_abs_epi32(a), b)
+    }
+
+    #[inline(always)]
+    fn differ(self, [a, b]: [Self::Wholes; 2]) -> u16 {
+        self.negative(self.avx512f._mm512_xor_si512(a, b))
+    }
+
+    #[inline(always)]
+    fn any_within(self, a: [Self::Wholes; 2], b: i32) -> u16 {
+        let [first, second] = a.map(|a| self.avx512f._mm512_abs_epi32(a));
+        let b = self.avx512f._mm512_set1_epi32(b);
+        self.avx512f._mm512_cmple_epu32_mask(self.avx512f._mm512_min_epu32(first, second), b)
     }
 
     #[inline(always)]

@@ -14,6 +14,7 @@ use drypoint_tests::compare::compare;
 use drypoint_tests::viewpoints;
 use rayon::ThreadPoolBuilder;
 
+use crate::floor::Floor;
 use crate::quartiles;
 
 /// An extractor, by name: looks from all viewpoints.
@@ -61,14 +62,17 @@ pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
             of_default.edges(view, found);
         },
     ));
+    // As cameras have them.
+    let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
+    let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
+    let mut floor = Floor::new(&patches, &rounded);
+    let name = "the floor: ids written, of accepted blocks that are read";
+    contenders.push((name.into(), Box::new(move |viewpoints| floor.look(viewpoints))));
     let exact = viewpoints.clone();
     let (name, mut look) = contender("patches, ids, newest, viewpoints in f64", |view, found| {
         newest.edges(view, found);
     });
     contenders.push((name, Box::new(move |_| look(&exact))));
-    // As cameras have them.
-    let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
-    let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
     report(&mut contenders, &rounded, rounds);
     Ok(())
 }

@@ -3,6 +3,7 @@
 
 mod calibrate;
 mod cpu;
+mod floor;
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
