@@ -45,11 +45,36 @@ fn exact_side([a, b, c]: [DVec3; 3], viewpoint: Viewpoint) -> Ordering {
     if viewpoint.is_point() {
         return orientation(a, b, c, viewpoint.xyz());
     }
-    // The sign of det(b − a, c − a, d). Differences of f32 are nearly always exact in f64.
+    // The sign of det(b − a, c − a, d), which is the normal's product with the direction.
     let direction = viewpoint.xyz();
+    if let Some(side) = side_by_components([a, b, c], direction) {
+        return side;
+    }
+    // Differences of f32 are nearly always exact in f64.
     match (exact_difference(b, a), exact_difference(c, a)) {
         (Some(u), Some(v)) => orientation(u, v, direction, DVec3::ZERO).reverse(),
         _ => rational_determinant(a, b, c, direction),
+    }
+}
+
+/// The same towards `direction` where all terms of the normal's product with it that are not 0 have one
+/// sign, by a tenth of the work: so it is with every face in a view along an axis, and with faces along
+/// axes in every view.
+fn side_by_components(corners: [DVec3; 3], direction: DVec3) -> Option<Ordering> {
+    let [mut is_front, mut is_back] = [false; 2];
+    for plane @ [x, y] in PLANES {
+        let along = direction[3 - x - y];
+        if along != 0.0 {
+            let term = shadow(corners, plane) * along.signum();
+            is_front |= term > 0.0;
+            is_back |= term < 0.0;
+        }
+    }
+    match (is_front, is_back) {
+        (false, false) => Some(Ordering::Equal),
+        (true, false) => Some(Ordering::Greater),
+        (false, true) => Some(Ordering::Less),
+        (true, true) => None,
     }
 }
 
@@ -89,11 +114,13 @@ pub fn unit_normal(corners: [Vec3; 3]) -> Option<DVec3> {
 
 /// Whether the corners span a plane: exactly, `false` if and only if they are collinear.
 pub fn has_area(corners: [Vec3; 3]) -> bool {
+    let corners = corners.map(|p| p.as_dvec3());
     PLANES.iter().any(|&plane| shadow(corners, plane) != 0.0)
 }
 
 /// Whether two triangles in one plane, exactly, have opposite normals, or one of them no area.
 pub(crate) fn are_opposite([left, right]: [[Vec3; 3]; 2]) -> bool {
+    let [left, right] = [left, right].map(|corners| corners.map(|p| p.as_dvec3()));
     // The normals are parallel, so any component of theirs that is not 0 will tell.
     PLANES.iter().all(|&plane| shadow(left, plane) * shadow(right, plane) <= 0.0)
 }
@@ -103,8 +130,8 @@ const PLANES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
 /// Twice the area of a triangle's shadow on one of [`PLANES`], a component of its normal. Positive
 /// if it runs counter-clockwise, negative if clockwise, 0 if collinear, exactly; rounded otherwise.
-fn shadow(corners: [Vec3; 3], [x, y]: [usize; 2]) -> f64 {
-    let [a, b, c] = corners.map(|p| Coord { x: f64::from(p[x]), y: f64::from(p[y]) });
+fn shadow(corners: [DVec3; 3], [x, y]: [usize; 2]) -> f64 {
+    let [a, b, c] = corners.map(|p| Coord { x: p[x], y: p[y] });
     robust::orient2d(a, b, c)
 }
 
@@ -197,6 +224,32 @@ mod tests {
             let expected = rational_determinant(p, q, r, direction);
             prop_assert_eq!(face_side([a, b, c], Viewpoint::from_direction(direction)), expected);
             prop_assert_eq!(face_side([b, c, a], Viewpoint::from_direction(direction)), expected);
+            prop_assert_eq!(face_side([b, a, c], Viewpoint::from_direction(direction)), expected.reverse());
+        }
+
+        /// Faces in planes of the coordinates, and directions along axes and in their planes.
+        #[test]
+        fn what_lies_along_axes_agrees_with_rational_arithmetic(
+            corners in [wild_point(), wild_point(), wild_point()], direction in wild_point(),
+            flat in [0u8..3, 0u8..3, 0u8..3], along in [0u8..3, 0u8..3, 0u8..3],
+        ) {
+            let [mut a, mut b, mut c] = corners;
+            let mut direction = direction.as_dvec3();
+            for axis in 0..3 {
+                if flat[axis] == 0 {
+                    (b[axis], c[axis]) = (a[axis], a[axis]);
+                }
+                if along[axis] > 0 {
+                    direction[axis] = 0.0;
+                }
+                // Collinear, if it is so on every axis.
+                if flat[axis] == 1 {
+                    (a[axis], b[axis], c[axis]) = (a[axis], 0.0, -a[axis]);
+                }
+            }
+            let [p, q, r] = [a, b, c].map(|p| p.as_dvec3());
+            let expected = rational_determinant(p, q, r, direction);
+            prop_assert_eq!(face_side([a, b, c], Viewpoint::from_direction(direction)), expected);
             prop_assert_eq!(face_side([b, a, c], Viewpoint::from_direction(direction)), expected.reverse());
         }
 
