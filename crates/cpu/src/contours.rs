@@ -8,10 +8,10 @@ use crate::Statistics;
 use crate::exact::Hit;
 use crate::kernels::SLACK;
 
-/// What an extractor found, and memory for the next time: edge ids or vertex pairs.
+/// What an extractor found, and memory for the next time: edge ids or vertex pairs, as a slice.
 ///
-/// It grows once to the places of all edges, and never again for the same extractor; what threads find
-/// of one view, to what the views need.
+/// It grows once to the places of all edges, and never again for the same extractor and the same calls;
+/// what threads find of one view, to what the views need.
 #[derive(Clone, Debug)]
 pub struct Contours<T> {
     pub(crate) found: Found<T>,
@@ -22,6 +22,15 @@ pub struct Contours<T> {
 impl<T> Default for Contours<T> {
     fn default() -> Self {
         Self { found: Found::default(), scratch: Scratch::default(), shares: Vec::new() }
+    }
+}
+
+impl<'a, T> IntoIterator for &'a Contours<T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
     }
 }
 

@@ -23,7 +23,7 @@ impl Seen {
     /// Whether there is an edge that may be a contour edge.
     #[inline(always)]
     pub(crate) fn is_any(self) -> bool {
-        self.contours | self.doubtful != 0
+        (self.contours | self.doubtful) != 0
     }
 }
 
@@ -33,7 +33,7 @@ pub(crate) trait Blocks: Default {
     /// own. Those of one face only are never contour edges.
     fn push(&mut self, frame: &Frame, positions: &[Vec3], wings: &[Wing], first_place: u32);
 
-    /// What is looked at of every block; slices, so that a loop needs not ask for them again.
+    /// What is looked at of every block; slices, so that a loop need not ask for them again.
     type LookedAt<'a>: Copy
     where
         Self: 'a;

@@ -116,8 +116,10 @@ impl<'a> Extractor<'a> {
         let Contours { found, scratch, .. } = contours;
         found.statistics =
             Statistics { edges_tested: self.patches.wings().len(), ..Statistics::default() };
-        let hits = scratch.hits(self.blocks.len() as usize);
-        self.test(0..self.blocks.len(), self.sight(viewpoint), &self.edges, (hits, found));
+        // For what culling needs, too, so that no later call needs more.
+        self.make_room(scratch);
+        let blocks = 0..self.blocks.len();
+        self.test(blocks, self.sight(viewpoint), &self.edges, (&mut scratch.hits, found));
         found.statistics
     }
 
@@ -147,12 +149,7 @@ impl<'a> Extractor<'a> {
         labels: &[[T; LANES]],
         (scratch, found): (&mut Scratch, &mut Found<T>),
     ) {
-        let (groups, bounds) = (self.groups.held.len(), self.bounds.held.len());
-        scratch.make_room([
-            groups.max(bounds),
-            self.bounds.blocks.len(),
-            self.blocks.len() as usize,
-        ]);
+        self.make_room(scratch);
         let Scratch { survivors, bound_blocks, edge_blocks, hits } = scratch;
         let groups = self.level.run(Cull {
             numbers: part.groups.clone(),
@@ -182,6 +179,16 @@ impl<'a> Extractor<'a> {
         statistics.patches_accepted += patches.survivors;
         statistics.edges_tested += patches.count + part.edges;
         self.test(edge_blocks[..end].iter().copied(), sight, labels, (hits, found));
+    }
+
+    /// For whatever is looked through.
+    fn make_room(&self, scratch: &mut Scratch) {
+        let (groups, bounds) = (self.groups.held.len(), self.bounds.held.len());
+        scratch.make_room([
+            groups.max(bounds),
+            self.bounds.blocks.len(),
+            self.blocks.len() as usize,
+        ]);
     }
 
     /// Appends the contour edges in so many blocks of edges.

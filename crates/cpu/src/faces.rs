@@ -6,7 +6,7 @@
 //!
 //! g = (n, −n · (p − c) / R) · (v − w c, w R) / |(v − w c, w R)|.
 //!
-//! Both have a length of at most √2 and 1. Times S = 2¹⁵ − 1 they are p and q, and rounded to whole
+//! They are no longer than √2 and 1, in this order. Times S = 2¹⁵ − 1 they are p and q, and rounded to whole
 //! numbers P = p + δ and Q = q + ε, off by ½ in each place at most. The product P · Q fits an i32, since
 //! S² √2 < 2³¹ by far more than the rounding, and is exact: it depends on no order and on no processor.
 //! It is off from S² g by
@@ -16,8 +16,9 @@
 //! as the normal in P is no longer than S + ½ √3, and its offset no more than S. That is between ½ S and
 //! 2.37 S, and known once the viewpoint is; 181 = 2⁻²³ S² √2 more pays for the 1e-7 radians that
 //! [`unit_normal`] may be off by. If the product is farther from 0 than that, its sign is the plane's:
-//! else the exact predicate is asked: where a plane is seen under an angle below 1e-4 radians, as all
-//! those are that are parallel to the direction of an orthographic view.
+//! else the exact predicate is asked. That is so where a plane passes the viewpoint within 7e-5 of its
+//! distance from c, or of R if that is more: from far away, where it is seen under an angle below 1e-4
+//! radians, as all planes are that are parallel to the direction of an orthographic view.
 
 use drypoint_mesh::{Viewpoint, Wing, unit_normal};
 use glam::{DVec3, DVec4, Vec3};

@@ -1,4 +1,4 @@
-//! The two loops that take the time: over bounds, and over faces.
+//! The two loops that take the time: over bounds, and over edges.
 
 use drypoint_bounds::MIN_CLEARANCE;
 use drypoint_mesh::Viewpoint;
@@ -159,7 +159,8 @@ where
         let (mut hit, mut doubtful) = (0, 0);
         for block in numbers {
             let seen = B::look(looked_at, lanes, block, view);
-            // Written in any case, and over if there was nothing: that is never guessed wrong.
+            // Written in any case, and overwritten by the next if there was nothing: no branch that could be
+            // guessed wrong.
             hits[hit] = Hit { block, seen };
             hit += usize::from(seen.is_any());
             doubtful |= seen.doubtful;

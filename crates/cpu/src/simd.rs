@@ -81,8 +81,8 @@ impl Level {
     }
 }
 
-/// A loop that is compiled for each kind of [`Lanes`]. `run` and all that it calls must be
-/// `#[inline(always)]`, so as to be compiled with their instructions.
+/// A loop that is compiled for each kind of [`Lanes`]. `run` and all that it calls of
+/// [`Lanes`] must be `#[inline(always)]`, so as to be compiled with their instructions.
 pub(crate) trait Kernel {
     type Output;
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
@@ -107,7 +107,7 @@ pub(crate) trait Lanes: Copy {
     fn dot(self, a: [&Pairs; 2], b: [[i16; 2]; 2]) -> Self::Wholes;
     /// Mask of a < 0.
     fn negative(self, a: Self::Wholes) -> u16;
-    /// Mask of |a| < b or |a| = b; b is above 0 and below 2³¹ − 1.
+    /// Mask of |a| < b or |a| = b; b is 0 or more, and below 2³¹ − 1.
     fn within(self, a: Self::Wholes, b: i32) -> u16;
     /// Mask of where one of both is below 0, and the other is not.
     fn differ(self, a: [Self::Wholes; 2]) -> u16;

@@ -26,7 +26,7 @@ fn nothing_is_allocated_after_the_first_view() {
         let extractor = Extractor::with(&set, instructions).unwrap();
         let (mut edges, mut pairs) = (Contours::default(), Contours::default());
         let first = allocation_counter::measure(|| {
-            extractor.edges(viewpoints[0], &mut edges);
+            extractor.all_edges(viewpoints[0], &mut edges);
             extractor.vertex_pairs(viewpoints[0], &mut pairs);
         });
         assert!(first.count_total > 0, "the counter counts");

@@ -110,7 +110,7 @@ impl Aabb {
         self.max.as_dvec3() - self.min.as_dvec3()
     }
 
-    /// Half the longest side: the unit of `CostModel::view_distance`.
+    /// Half the longest side: the unit of view profiles, and of the distances of viewpoints in the papers.
     pub fn half_longest_side(&self) -> f64 {
         0.5 * self.size().max_element()
     }

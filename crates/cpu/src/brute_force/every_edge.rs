@@ -10,8 +10,8 @@ use crate::simd::{Instructions, Level};
 use crate::strips::Strips;
 use crate::{Contours, Statistics};
 
-/// Tests every edge, with the planes of both its faces stored beside it: 36 bytes an edge, of which 16 are read from
-/// everywhere. The simplest that runs at the speed of the memory.
+/// Tests every edge, with the planes of both its faces stored beside it: 36 bytes an edge, of which 16
+/// are read from everywhere. The simplest that runs at the speed of the memory.
 #[derive(Clone, Debug)]
 pub struct StoredPlanes<'mesh>(EveryEdge<'mesh, EdgePlanes>);
 

@@ -9,8 +9,8 @@ use crate::faces::{LANES, Pairs};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Portable;
 
-/// As many labels as most blocks of faces give, or fewer: a branch on how many there are would be guessed
-/// wrong too often.
+/// So many labels are written in any case, as few blocks have more: a branch on how many there are would
+/// be guessed wrong too often.
 const MOST_CONTOURS: usize = 3;
 
 impl Portable {
