@@ -1,5 +1,7 @@
 //! Every extractor against the definition.
 
+use std::fmt;
+
 use drypoint_cpu::{
     Batch, BruteForce, Contours, Extractor, FaceSigns, FaceStrips, Instructions, Statistics,
     StoredPlanes, extract_all_wings, extract_patches,
@@ -7,6 +9,8 @@ use drypoint_cpu::{
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
 use rayon::prelude::*;
+
+use crate::judges::{Judge, Tested};
 
 /// How an extractor disagrees with the definition, with all that is needed to see it again.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +23,19 @@ pub struct Disagreement {
     pub lost: Vec<EdgeId>,
     /// Edges that it found and the definition does not have.
     pub invented: Vec<EdgeId>,
+}
+
+impl fmt::Display for Disagreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.viewpoint.is_point() { "eye" } else { "direction" };
+        let xyz = self.viewpoint.xyz().to_array();
+        let (lost, invented) = (self.lost.len(), self.invented.len());
+        write!(
+            f,
+            "{} disagrees with the definition from {kind} {xyz:?}: {lost} edges lost, {invented} invented",
+            self.extractor
+        )
+    }
 }
 
 /// What agreed.
@@ -84,6 +101,21 @@ impl Expected {
         Ok(Self { filter, views: views.collect::<Result<_, Box<Disagreement>>>()? })
     }
 
+    /// The same by the definition alone.
+    pub fn by_definition(
+        mesh: &Mesh,
+        adjacency: &MeshAdjacency,
+        filter: EdgeFilter,
+        viewpoints: &[Viewpoint],
+    ) -> Self {
+        let look = |&viewpoint: &Viewpoint| {
+            let mut expected = Vec::new();
+            contour_edges(mesh, adjacency, viewpoint, filter, &mut expected);
+            (viewpoint, expected)
+        };
+        Self { filter, views: viewpoints.par_iter().map(look).collect() }
+    }
+
     /// Whether `patches`, made of the same mesh with the same filter, give the same from
     /// everywhere. On all threads.
     ///
@@ -128,6 +160,46 @@ impl Expected {
             self.compare_batch(name, extractor)?;
         }
         Ok(agreement)
+    }
+
+    /// What each view takes through the bounds of `judge`, which must find the same. On all threads.
+    ///
+    /// # Errors
+    /// Where it does not.
+    pub fn watch(
+        &self,
+        name: &'static str,
+        judge: &dyn Judge,
+    ) -> Result<Vec<Tested>, Box<Disagreement>> {
+        let look = |found: &mut Vec<EdgeId>, (viewpoint, expected): &(Viewpoint, Vec<EdgeId>)| {
+            let tested = judge.extract(*viewpoint, found);
+            found.sort_unstable();
+            check(name, *viewpoint, expected, found).map(|()| tested)
+        };
+        self.views.par_iter().map_init(Vec::new, look).collect()
+    }
+
+    /// The same, summed up.
+    ///
+    /// # Errors
+    /// Where it does not find the same.
+    pub fn agreement(
+        &self,
+        name: &'static str,
+        judge: &dyn Judge,
+    ) -> Result<Agreement, Box<Disagreement>> {
+        let tested = self.watch(name, judge)?;
+        Ok(Agreement {
+            viewpoints: tested.len(),
+            contour_edges: self.counts().sum(),
+            bounds_tested: tested.iter().map(|view| view.bounds).sum(),
+            edges_tested: tested.iter().map(|view| view.edges).sum(),
+        })
+    }
+
+    /// How many contour edges there are from each viewpoint.
+    pub fn counts(&self) -> impl Iterator<Item = usize> + '_ {
+        self.views.iter().map(|(_, edges)| edges.len())
     }
 
     /// A batch gives what its views give one by one, and so do all threads on one view.

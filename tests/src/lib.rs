@@ -1,11 +1,13 @@
 //! What the tests, the validation and the benchmark across crates share: meshes, parameters,
-//! viewpoints and the comparison of every extractor with the definition.
+//! viewpoints, the comparison of every extractor with the definition, and the report.
 
 pub mod boundary;
 pub mod compare;
+pub mod judges;
 pub mod meshes;
 pub mod models;
 pub mod presets;
+pub mod report;
 pub mod viewpoints;
 
 /// The example of the README is a test.

@@ -38,6 +38,21 @@ pub fn protocol(mesh: &Mesh) -> Vec<Viewpoint> {
     DISTANCES.into_iter().flat_map(around).collect()
 }
 
+/// A spiral of ten turns around the mesh from the lower pole to the upper, ten half-lengths away. Empty
+/// for a mesh without triangles.
+pub fn spiral(mesh: &Mesh, count: usize) -> Vec<Viewpoint> {
+    let Some(bounds) = mesh.bounds() else { return Vec::new() };
+    let (center, unit) = (bounds.center(), bounds.half_longest_side());
+    let viewpoint = |index: usize| {
+        let along = index as f64 / count.saturating_sub(1).max(1) as f64;
+        let (sin, cos) = (20.0 * std::f64::consts::PI * along).sin_cos();
+        let height = 2.0 * along - 1.0;
+        let radius = (1.0 - height * height).sqrt();
+        Viewpoint::at(center + 10.0 * unit * DVec3::new(radius * cos, radius * sin, height))
+    };
+    (0..count).map(viewpoint).collect()
+}
+
 /// Orthographic views: the 42 directions and the six axes, which many faces of made things graze.
 pub fn orthographic() -> Vec<Viewpoint> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
@@ -125,6 +140,18 @@ mod tests {
             assert!(directions[..index].iter().all(|b| a.distance(*b) > 0.5), "{a} twice");
         }
         assert!(directions.iter().sum::<DVec3>().length() < 1e-9, "not even");
+    }
+
+    #[test]
+    fn the_spiral_goes_from_pole_to_pole() {
+        let mesh = shapes::icosphere(20);
+        let unit = mesh.bounds().unwrap().half_longest_side();
+        let spiral = spiral(&mesh, 100);
+        assert_eq!(spiral.len(), 100);
+        assert!(spiral.iter().all(|v| (v.xyz().length() - 10.0 * unit).abs() < 1e-6));
+        assert!(spiral[0].xyz().z < -9.9 * unit && spiral[99].xyz().z > 9.9 * unit);
+        let steps = spiral.windows(2).map(|pair| pair[0].xyz().distance(pair[1].xyz()));
+        assert!(steps.fold(0.0, f64::max) < 8.0 * unit);
     }
 
     #[test]

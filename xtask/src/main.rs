@@ -26,7 +26,8 @@ Usage: cargo xtask <COMMAND>
   validate --boundary  look at every patch from where it is just culled, and at meshes from near by
   validate --mutants   break the bounds on purpose and compare who notices with docs/mutants.md;
                        with --bless: write that page
-  bench [ARGS]         time every extractor; with --calibrate: what the cost model is made of; --cpu: extraction alone
+  bench [ARGS]         count and time every extractor, into target/report; --quick: in three minutes
+  models [NAME...]     list the meshes that are worth having, their terms and sources; --download gets them
   ci                   what CI runs, in the same order
 
 Meshes for test, validate and bench are looked for in the folder DRYPOINT_MODELS.
@@ -48,7 +49,7 @@ fn dispatch(arguments: &[String]) -> Result<(), String> {
         print!("{HELP}");
         return Ok(());
     };
-    // `validate` and `bench` hand their arguments on, and have a help of their own.
+    // `validate` and `bench` hand their arguments on; these and `models` have a help of their own.
     let asks_help = rest.first().is_some_and(|first| first == "--help" || first == "-h");
     match command.as_str() {
         "test" | "tidy" | "ci" if asks_help => {
@@ -59,6 +60,7 @@ fn dispatch(arguments: &[String]) -> Result<(), String> {
         "tidy" => no_arguments(command, rest).and_then(|()| tidy::run()),
         "validate" => validate::run(rest),
         "bench" => bench::run(rest),
+        "models" => models::run(rest),
         "ci" => no_arguments(command, rest).and_then(|()| ci::run()),
         "help" | "--help" | "-h" => {
             print!("{HELP}");
@@ -97,6 +99,10 @@ mod tests {
     fn what_is_not_known_is_an_error() {
         check(&["tset"], Some("no command `tset`"));
         check(&["tidy", "--fix"], Some("`tidy` takes no `--fix`"));
+        check(
+            &["models", "--get"],
+            Some("`models` takes no `--get`; see `cargo xtask models --help`"),
+        );
         check(&["ci", "now"], Some("`ci` takes no `now`"));
         check(
             &["test", "--quick"],

@@ -1,9 +1,21 @@
-//! The folder of real meshes, named by the environment variable `DRYPOINT_MODELS`.
+//! The folder of real meshes, named by the environment variable `DRYPOINT_MODELS`, and
+//! `cargo xtask models`, which says what can be in it.
+
+mod catalogue;
+mod check;
+mod command;
+#[cfg(test)]
+mod download_tests;
+mod fetch;
+mod get;
+
+pub(crate) use command::run;
 
 use std::env;
 use std::ffi::OsStr;
 use std::fs;
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const VARIABLE: &str = "DRYPOINT_MODELS";
@@ -25,7 +37,7 @@ pub(crate) fn hand_to(command: &mut Command) -> Result<(), String> {
         }
         None => println!(
             "{VARIABLE} is not set: real meshes are skipped. To include them, set it to a folder of \
-             .{} files",
+             .{} files; `cargo xtask models` knows some",
             EXTENSIONS.join(", .")
         ),
     }
@@ -38,16 +50,24 @@ fn folder(value: Option<&OsStr>) -> Result<Option<(PathBuf, usize)>, String> {
     let named = PathBuf::from(value);
     let wrong = |what: &str| format!("{VARIABLE}={}: {what}", named.display());
     let absolute = fs::canonicalize(&named).map_err(|e| wrong(&e.to_string()))?;
-    let entries = fs::read_dir(&absolute).map_err(|e| wrong(&e.to_string()))?;
-    let is_mesh = |path: PathBuf| {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        extension.is_some_and(|e| EXTENSIONS.contains(&e.as_str()))
-    };
-    let count = entries.flatten().filter(|entry| is_mesh(entry.path())).count();
+    let count = meshes_in(&absolute).map_err(|e| wrong(&e.to_string()))?.len();
     if count == 0 {
         return Err(wrong(&format!("no .{} file in this folder", EXTENSIONS.join(", ."))));
     }
     Ok(Some((absolute, count)))
+}
+
+/// What the variable names, whether it exists or not.
+fn named_folder() -> Option<PathBuf> {
+    env::var_os(VARIABLE).filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+fn meshes_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let is_mesh = |path: &PathBuf| {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        extension.is_some_and(|e| EXTENSIONS.contains(&e.as_str()))
+    };
+    Ok(fs::read_dir(folder)?.flatten().map(|entry| entry.path()).filter(is_mesh).collect())
 }
 
 #[cfg(test)]

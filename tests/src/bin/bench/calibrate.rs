@@ -2,15 +2,15 @@
 //! CGF 2024, §4.2).
 
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use drypoint_cpu::{Statistics, extract_all_wings, extract_patches};
-use drypoint_fusion::{FusionParams, PatchSet, fuse};
+use drypoint_fusion::{FusionParams, PatchSet};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint};
+use drypoint_tests::report::{Calibration, Quartiles};
 use drypoint_tests::viewpoints;
 
-use crate::quartiles;
+use crate::decompositions::fused;
 
 /// One viewpoint of the protocol in so many: all of them tell no more, and take minutes.
 const VIEWPOINTS_EVERY: usize = 5;
@@ -26,37 +26,27 @@ struct Sample {
     accepted_patch: f64,
 }
 
-/// Measures from each viewpoint in turn, `rounds` times, and prints medians and quartiles.
-pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
-    let params = FusionParams::FAST;
-    let adjacency = MeshAdjacency::new(mesh);
-    let go_on = |_| ControlFlow::Continue(());
-    let set = fuse(mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)
-        .map_err(|error| error.to_string())?;
+/// Measures from each viewpoint in turn, `rounds` times; none if there are no patches.
+pub(crate) fn measure(
+    mesh: &Mesh,
+    adjacency: &MeshAdjacency,
+    rounds: u32,
+) -> Result<Option<Calibration>, String> {
+    let set = fused(mesh, adjacency, EdgeFilter::Convex, &FusionParams::FAST)?;
     if set.patches().is_empty() {
-        return Err("has no patches to measure".to_owned());
+        return Ok(None);
     }
     let views: Vec<Viewpoint> =
         viewpoints::protocol(mesh).into_iter().step_by(VIEWPOINTS_EVERY).collect();
-    println!(
-        "  {} edges in {} patches, {} views, {rounds} rounds",
-        set.wings().len(),
-        set.patches().len(),
-        views.len()
-    );
     // One after the other from each viewpoint, so that what disturbs the machine meets few of them.
     let look = |_| views.iter().map(|&viewpoint| sample(&set, viewpoint)).collect::<Vec<_>>();
     let samples: Vec<Sample> = (0..rounds).flat_map(look).collect();
-    let print = |what: &str, unit: &str, value: &dyn Fn(&Sample) -> f64| {
-        let [low, median, high] = quartiles(samples.iter().map(value).collect());
-        println!("  {what:<10} {median:>8.3} {unit:<3} [{low:.3}, {high:.3}]");
-    };
-    print("t_e", "ns", &|s| 1e9 * s.edge);
-    print("t_P", "ns", &|s| 1e9 * s.patch_test);
-    print("t_A", "ns", &|s| 1e9 * s.accepted_patch);
-    print("t_P / t_e", "", &|s| s.patch_test / s.edge);
-    print("t_A / t_e", "", &|s| s.accepted_patch / s.edge);
-    Ok(())
+    let quartiles = |value: fn(&Sample) -> f64| Quartiles::of(samples.iter().map(value));
+    Ok(Some(Calibration {
+        edge: quartiles(|s| 1e9 * s.edge),
+        patch_test: quartiles(|s| s.patch_test / s.edge),
+        accepted_patch: quartiles(|s| s.accepted_patch / s.edge),
+    }))
 }
 
 fn sample(set: &PatchSet, viewpoint: Viewpoint) -> Sample {

@@ -1,80 +1,149 @@
 //! Extraction on the CPU: every brute force and every kernel, in turn.
 
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
+use drypoint_baselines::{AnchoredCones, Meshlets, Snch};
 use drypoint_cpu::{
     Batch, BruteForce, Extractor, FaceSigns, FaceStrips, Instructions, StoredPlanes,
     extract_all_wings, extract_naively, extract_patches,
 };
-use drypoint_fusion::{CostModel, FusionParams, Levels, PatchSet, fuse};
-use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint};
-use drypoint_tests::compare::compare;
+use drypoint_fusion::{CostModel, FusionParams, Levels, PatchSet};
+use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint};
+use drypoint_tests::compare::Expected;
+use drypoint_tests::judges::Judge;
+use drypoint_tests::report::{Quartiles, Time};
 use drypoint_tests::viewpoints;
 use rayon::ThreadPoolBuilder;
 
+use crate::decompositions::fused;
 use crate::floor::Floor;
-use crate::quartiles;
 
-/// An extractor, by name: looks from all viewpoints.
-type Contender<'a> = (String, Box<dyn FnMut(&[Viewpoint]) + 'a>);
+type Look<'a> = Box<dyn FnMut(&[Viewpoint]) + 'a>;
 
-/// Prints the median time of a view for each, and how many times as fast as the first it is.
-pub(crate) fn run(mesh: &Mesh, rounds: u32) -> Result<(), String> {
-    let adjacency = MeshAdjacency::new(mesh);
+/// An extractor that looks from all viewpoints.
+struct Contender<'a> {
+    name: String,
+    is_brute_force: bool,
+    look: Look<'a>,
+}
+
+impl Contender<'_> {
+    fn brute_force(mut self) -> Self {
+        self.is_brute_force = true;
+        self
+    }
+}
+
+/// The median time of a view for each, and how many times as fast as the first it is.
+pub(crate) fn measure(
+    mesh: &Mesh,
+    adjacency: &MeshAdjacency,
+    rounds: u32,
+) -> Result<Vec<Time>, String> {
     let viewpoints = viewpoints::protocol(mesh);
-    let fused = |params| {
-        let go_on = |_| ControlFlow::Continue(());
-        let set = fuse(mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)
-            .map_err(|error| error.to_string())?;
-        compare(mesh, &adjacency, &set, &viewpoints)
-            .map_err(|wrong| format!("{} disagrees with the definition", wrong.extractor))?;
-        Ok::<_, String>(set)
-    };
-    let params = FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::DEFAULT };
-    let patches = fused(params)?;
-    let by_paper = fused(FusionParams::DEFAULT)?;
-    let two_levels = fused(FusionParams { levels: Levels::Two, ..params })?;
-    let start = Instant::now();
-    black_box(Extractor::new(&patches));
-    println!("  laid out in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-    let [newest, of_default] = [&patches, &by_paper].map(Extractor::new);
-    let mut contenders = exact_ones(mesh, &adjacency, &patches);
-    for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
-        contenders.extend(brute_forces(mesh, &adjacency, instructions));
-        let name = format!("{instructions:?}");
-        let extractor = Extractor::with(&patches, instructions);
-        contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
-        let name = format!("{instructions:?}, two levels");
-        let extractor = Extractor::with(&two_levels, instructions);
-        contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
-    }
-    contenders.push(contender("patches, ids, newest, one view on all threads", |view, found| {
-        newest.edges_on_threads(view, found);
-    }));
-    for threads in [1, rayon::current_num_threads()] {
-        contenders.extend(in_batches(&newest, threads)?);
-    }
-    contenders.push(contender(
-        "patches, ids, newest, made for the paper's costs",
-        |view, found| {
-            of_default.edges(view, found);
-        },
-    ));
     // As cameras have them.
     let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
     let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
-    let mut floor = Floor::new(&patches, &rounded);
-    let name = "the floor: ids written, of accepted blocks that are read";
-    contenders.push((name.into(), Box::new(move |viewpoints| floor.look(viewpoints))));
-    let exact = viewpoints.clone();
-    let (name, mut look) = contender("patches, ids, newest, viewpoints in f64", |view, found| {
+    let filter = EdgeFilter::Convex;
+    let both = [&viewpoints[..], &rounded[..]].concat();
+    let expected =
+        Expected::new(mesh, adjacency, filter, &both).map_err(|wrong| wrong.to_string())?;
+    let sets = Sets::new(mesh, adjacency, &expected)?;
+    let judges = Judges::new(mesh, adjacency, &expected)?;
+    let [newest, of_default] = [&sets.patches, &sets.by_paper].map(Extractor::new);
+    let mut contenders = exact_ones(mesh, adjacency, &sets.patches);
+    contenders.extend(judges.contenders());
+    for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
+        contenders.extend(brute_forces(mesh, adjacency, instructions));
+        let name = format!("{instructions}");
+        let extractor = Extractor::with(&sets.patches, instructions);
+        contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
+        let name = format!("{instructions}, two levels");
+        let extractor = Extractor::with(&sets.two_levels, instructions);
+        contenders.extend(extractor.into_iter().flat_map(|e| through_patches(e, &name)));
+    }
+    let (set, all_threads) = (Instructions::newest(), rayon::current_num_threads());
+    if all_threads > 1 {
+        let name = format!("patches, ids, {set}, one view on {all_threads} threads");
+        contenders.push(contender(name, |view, found| {
+            newest.edges_on_threads(view, found);
+        }));
+    }
+    for threads in [1, all_threads].into_iter().take(all_threads.min(2)) {
+        contenders.extend(in_batches(&newest, threads)?);
+    }
+    let name = format!("patches, ids, {set}, made for the paper's costs");
+    contenders.push(contender(name, |view, found| {
+        of_default.edges(view, found);
+    }));
+    let mut in_f64 = contender(format!("patches, ids, {set}, viewpoints in f64"), |view, found| {
         newest.edges(view, found);
     });
-    contenders.push((name, Box::new(move |_| look(&exact))));
-    report(&mut contenders, &rounded, rounds);
-    Ok(())
+    let mut look = in_f64.look;
+    in_f64.look = Box::new(move |rounded| look(&viewpoints[..rounded.len()]));
+    contenders.push(in_f64);
+    let mut floor = Floor::new(&sets.patches, &rounded);
+    contenders.push(Contender {
+        name: "floor: ids written, of accepted blocks that are read".to_owned(),
+        is_brute_force: false,
+        look: Box::new(move |viewpoints| floor.look(viewpoints)),
+    });
+    Ok(in_turn(&mut contenders, &rounded, rounds))
+}
+
+/// Patches, compared with the definition by every kernel.
+struct Sets {
+    patches: PatchSet,
+    /// Made for what tests cost in the paper.
+    by_paper: PatchSet,
+    two_levels: PatchSet,
+}
+
+impl Sets {
+    fn new(mesh: &Mesh, adjacency: &MeshAdjacency, expected: &Expected) -> Result<Self, String> {
+        let compared = |params| {
+            let set = fused(mesh, adjacency, EdgeFilter::Convex, &params)?;
+            expected.compare(&set).map_err(|wrong| wrong.to_string())?;
+            Ok::<_, String>(set)
+        };
+        let params = FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::DEFAULT };
+        Ok(Self {
+            patches: compared(params)?,
+            by_paper: compared(FusionParams::DEFAULT)?,
+            two_levels: compared(FusionParams { levels: Levels::Two, ..params })?,
+        })
+    }
+}
+
+/// What others have published.
+struct Judges<'a>([(&'static str, Box<dyn Judge + 'a>); 3]);
+
+impl<'a> Judges<'a> {
+    /// Compared with the definition.
+    fn new(mesh: &'a Mesh, adjacency: &MeshAdjacency, expected: &Expected) -> Result<Self, String> {
+        let filter = EdgeFilter::Convex;
+        let judges: [(_, Box<dyn Judge + 'a>); 3] = [
+            ("SNCH", Box::new(Snch::new(mesh, adjacency, filter, &Default::default()))),
+            (
+                "anchored cones",
+                Box::new(AnchoredCones::new(mesh, adjacency, filter, &Default::default())),
+            ),
+            ("meshlets", Box::new(Meshlets::new(mesh, adjacency, filter, &Default::default()))),
+        ];
+        for (name, judge) in &judges {
+            expected.watch(name, judge.as_ref()).map_err(|wrong| wrong.to_string())?;
+        }
+        Ok(Self(judges))
+    }
+
+    fn contenders(&self) -> impl Iterator<Item = Contender<'_>> {
+        self.0.iter().map(|(name, judge)| {
+            contender(format!("{name}, exact predicates"), |view, found: &mut Vec<EdgeId>| {
+                judge.extract(view, found);
+            })
+        })
+    }
 }
 
 fn contender<'a, T>(
@@ -91,7 +160,7 @@ where
             black_box(&found);
         }
     };
-    (name.into(), Box::new(look))
+    Contender { name: name.into(), is_brute_force: false, look: Box::new(look) }
 }
 
 /// The naive loop, and those with exact predicates throughout.
@@ -123,29 +192,26 @@ fn brute_forces<'a>(
     adjacency: &MeshAdjacency,
     instructions: Instructions,
 ) -> Vec<Contender<'a>> {
-    let mut contenders = Vec::new();
     let filter = EdgeFilter::Convex;
-    if let Some(stored) = StoredPlanes::new(mesh, adjacency, filter).with_instructions(instructions)
-    {
-        contenders.push(contender(
-            format!("stored planes, {instructions:?}"),
-            move |view, found| {
-                stored.extract(view, found);
-            },
-        ));
-    }
-    if let Some(mut signs) = FaceSigns::new(mesh, adjacency, filter).with_instructions(instructions)
-    {
-        contenders.push(contender(format!("face signs, {instructions:?}"), move |view, found| {
+    let stored = StoredPlanes::new(mesh, adjacency, filter).with_instructions(instructions);
+    let stored = stored.map(|stored| {
+        contender(format!("stored planes, {instructions}"), move |view, found| {
+            stored.extract(view, found);
+        })
+    });
+    let signs = FaceSigns::new(mesh, adjacency, filter).with_instructions(instructions);
+    let signs = signs.map(|mut signs| {
+        contender(format!("face signs, {instructions}"), move |view, found| {
             signs.extract(view, found);
-        }));
-    }
-    if let Some(strips) = FaceStrips::new(mesh, adjacency, filter).with_instructions(instructions) {
-        contenders.push(contender(format!("face strips, {instructions:?}"), move |view, found| {
+        })
+    });
+    let strips = FaceStrips::new(mesh, adjacency, filter).with_instructions(instructions);
+    let strips = strips.map(|strips| {
+        contender(format!("face strips, {instructions}"), move |view, found| {
             strips.extract(view, found);
-        }));
-    }
-    contenders
+        })
+    });
+    [stored, signs, strips].into_iter().flatten().map(Contender::brute_force).collect()
 }
 
 fn through_patches<'a>(extractor: Extractor<'a>, name: &str) -> [Contender<'a>; 2] {
@@ -177,28 +243,34 @@ fn in_batches<'a>(
     let look_for_pairs = move |viewpoints: &[Viewpoint]| {
         for_pairs.install(|| extractor.vertex_pairs_of_batch(viewpoints, &mut pairs));
     };
-    Ok([
-        (format!("batch, ids, newest, {threads} threads"), Box::new(look_for_edges)),
-        (format!("batch, vertex pairs, newest, {threads} threads"), Box::new(look_for_pairs)),
-    ])
+    let plural = if threads == 1 { "" } else { "s" };
+    let batch = |what, look: Look<'a>| Contender {
+        name: format!("batch, {what}, {}, {threads} thread{plural}", Instructions::newest()),
+        is_brute_force: false,
+        look,
+    };
+    Ok([batch("ids", Box::new(look_for_edges)), batch("vertex pairs", Box::new(look_for_pairs))])
 }
 
 /// Times all in turn, again and again, each after some views that bring its own data into the caches.
-fn report(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u32) {
+fn in_turn(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u32) -> Vec<Time> {
     let mut times = vec![Vec::new(); contenders.len()];
     let some: Vec<Viewpoint> = viewpoints.iter().copied().step_by(5).collect();
+    // The first time, memory grows.
+    contenders.iter_mut().for_each(|contender| (contender.look)(viewpoints));
     for _ in 0..rounds {
-        for ((_, look), times) in contenders.iter_mut().zip(&mut times) {
-            look(&some);
+        for (contender, times) in contenders.iter_mut().zip(&mut times) {
+            (contender.look)(&some);
             let start = Instant::now();
-            look(viewpoints);
+            (contender.look)(viewpoints);
             times.push(1e6 * start.elapsed().as_secs_f64() / viewpoints.len().max(1) as f64);
         }
     }
-    for ((name, _), own) in contenders.iter().zip(&times) {
-        let ratios = times[0].iter().zip(own).map(|(first, own)| first / own).collect();
-        let [low, ratio, high] = quartiles(ratios);
-        let micros = quartiles(own.clone())[1];
-        println!("  {name:<52}{micros:>9.1} µs {ratio:>7.1} x [{low:.1}, {high:.1}]");
-    }
+    let time = |(contender, own): (&Contender<'_>, &Vec<f64>)| Time {
+        name: contender.name.clone(),
+        micros: Quartiles::of(own.iter().copied()).median,
+        speed_up: Quartiles::of(times[0].iter().zip(own).map(|(first, own)| first / own)),
+        is_brute_force: contender.is_brute_force,
+    };
+    contenders.iter().zip(&times).map(time).collect()
 }

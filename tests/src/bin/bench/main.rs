@@ -1,49 +1,87 @@
-//! `cargo xtask bench`: what patches cost and gain, and what a drawing takes. Runs alone, too.
+//! `cargo xtask bench`: what extractors cost and gain, as one report. Runs alone, too.
 #![allow(clippy::print_stdout, reason = "the report is what this program is for")]
 
 mod calibrate;
-mod cpu;
+mod contenders;
+mod decompositions;
+mod documents;
+mod drawing;
 mod floor;
+mod kept;
+mod machine;
+mod measure;
 
-use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
 
-use clap::{Parser, value_parser};
-use drypoint_cpu::{BruteForce, extract_patches};
-use drypoint_fusion::{FusionParams, PatchSet, fuse};
-use drypoint_lines::{
-    Camera, Drawing, LineOptions, Occluders, Page, Segments, Style, VisibilityParams,
-    filter_for_drawing, to_svg,
-};
-use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, contour_edges, io, shapes};
-use drypoint_tests::compare::compare;
-use drypoint_tests::{models, viewpoints};
-use glam::DVec3;
+use clap::{Parser, ValueEnum, value_parser};
+use drypoint_mesh::{io, shapes};
+use drypoint_tests::models;
+use drypoint_tests::report::{MeshReport, Report, blocks, page};
 
-/// Times fusion, extraction and drawing on mesh files, or on those of the folder that DRYPOINT_MODELS
-/// names, or on built-in shapes. Every answer is compared with the definition before it is timed.
-#[derive(Parser)]
-#[command(name = "cargo xtask bench")]
+use crate::kept::Kept;
+
+/// Compares every extractor with the definition, then counts and times it, on mesh files, or on those
+/// of the folder that DRYPOINT_MODELS names, or on built-in shapes. Writes report.html, which needs no
+/// other file, and report.json. A run that was cut off goes on where it was.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask bench", version)]
 struct Options {
-    /// Of the published method, most edges fused as one group (4096 in the paper)
-    #[arg(long, value_name = "EDGES", default_value_t = 4096, value_parser = value_parser!(u32).range(2..))]
-    partition: u32,
-    /// Interleaved rounds of what is compared
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..))]
-    rounds: u32,
-    /// Instead, measure what the cost model is made of: the times of an edge test, a patch test and a
-    /// survivor
+    /// Folder for the report, and for what is kept of a run that is cut off
+    #[arg(short, long, value_name = "FOLDER", default_value = "drypoint-report")]
+    output: PathBuf,
+    /// Small meshes, few rounds and cheap methods: within three minutes
     #[arg(long)]
-    calibrate: bool,
-    /// Instead, time extraction on the CPU alone: every brute force and every kernel
-    #[arg(long, conflicts_with = "calibrate")]
-    cpu: bool,
+    quick: bool,
+    /// Interleaved rounds of what is timed [default: 7, and 2 with --quick]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1000))]
+    rounds: Option<u32>,
+    /// Only these, in the report; may be given several times
+    #[arg(long, value_name = "SECTION", value_enum)]
+    only: Vec<Section>,
+    /// Measure anew what an earlier run has kept
+    #[arg(long)]
+    fresh: bool,
+    /// Also write what was measured to docs/measurements.json of this repository, and into the
+    /// marked tables of its documents
+    #[arg(long, value_name = "REPOSITORY")]
+    docs: Option<PathBuf>,
     /// Mesh files
     #[arg(value_name = "MESH FILE")]
     files: Vec<PathBuf>,
 }
+
+/// A part of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Section {
+    /// The published method, by the size of its groups
+    Partitions,
+    /// Patches, meshlets and hierarchies: what each tests
+    Decompositions,
+    /// What the cost model is made of
+    Calibration,
+    /// Times of a view
+    Times,
+    /// A drawing, stage by stage
+    Drawing,
+}
+
+impl Options {
+    fn rounds(&self) -> u32 {
+        self.rounds.unwrap_or(if self.quick { 2 } else { 7 })
+    }
+
+    fn wants(&self, section: Section) -> bool {
+        self.only.is_empty() || self.only.contains(&section)
+    }
+}
+
+/// Models of a quick run, of those that there are.
+const QUICK_MODELS: [&str; 2] = ["spot", "stanford-bunny"];
+
+/// Faces of the built-in shapes that stand in where there is no model.
+const SHAPE_FACES: usize = 20_000;
 
 fn main() -> ExitCode {
     match run(&Options::parse()) {
@@ -56,120 +94,62 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), String> {
-    let files = if options.files.is_empty() { models::files()? } else { options.files.clone() };
+    let files = files(options)?;
+    if let Some(repository) = &options.docs {
+        documents::find(repository)?;
+    }
+    let kept = Kept::new(options)?;
+    let mut meshes = Vec::new();
     for path in &files {
-        let start = Instant::now();
-        let model = io::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let read = start.elapsed().as_secs_f64();
+        let model = io::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        println!("{name}: {} faces, read in {read:.3} s", model.mesh.triangles().len());
-        measure(&model.mesh, options)?;
+        meshes.push(measure::mesh(&name, &model.mesh, options, &kept)?);
     }
     if files.is_empty() {
         for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
-            let mesh = shapes::by_name(name, 20_000).ok_or(format!("no shape {name}"))?;
-            println!("{name}: {} faces", mesh.triangles().len());
-            measure(&mesh, options)?;
+            let mesh = shapes::by_name(name, SHAPE_FACES).ok_or(format!("no shape {name}"))?;
+            meshes.push(measure::mesh(name, &mesh, options, &kept)?);
         }
     }
+    finish(options, meshes)
+}
+
+/// Mesh files to measure; none for the built-in shapes.
+fn files(options: &Options) -> Result<Vec<PathBuf>, String> {
+    if !options.files.is_empty() {
+        return Ok(options.files.clone());
+    }
+    let mut files = models::files()?;
+    let is_quick = |path: &PathBuf| {
+        path.file_stem().is_some_and(|stem| QUICK_MODELS.iter().any(|name| stem == *name))
+    };
+    if options.quick {
+        files.retain(is_quick);
+    }
+    Ok(files)
+}
+
+/// Writes the report, whole or not at all.
+fn finish(options: &Options, meshes: Vec<MeshReport>) -> Result<(), String> {
+    let report = Report { machine: machine::machine(), run: machine::run(options), meshes };
+    let json = serde_json::to_string(&report).map_err(|error| error.to_string())?;
+    write(&options.output.join("report.json"), &json)?;
+    let html = options.output.join("report.html");
+    write(&html, &page(&report)?)?;
+    if let Some(repository) = &options.docs {
+        documents::update(repository, report.clone())?;
+    }
+    for (name, block) in blocks(&report) {
+        println!("{name}\n\n{block}");
+    }
+    println!("{}", html.display());
     Ok(())
 }
 
-fn measure(mesh: &Mesh, options: &Options) -> Result<(), String> {
-    if options.calibrate {
-        return calibrate::run(mesh, options.rounds);
-    }
-    if options.cpu {
-        return cpu::run(mesh, options.rounds);
-    }
-    let start = Instant::now();
-    let adjacency = MeshAdjacency::new(mesh);
-    println!("  adjacency {:.3} s", start.elapsed().as_secs_f64());
-    draw(mesh, &adjacency)?;
-    for (name, params) in [("reduced", FusionParams::PAPER), ("mean", FusionParams::PAPER_MEAN)] {
-        let params = params.with_max_partition(Some(options.partition));
-        let start = Instant::now();
-        let go_on = |_| ControlFlow::Continue(());
-        let patches = fuse(mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)
-            .map_err(|error| error.to_string())?;
-        print!("  {name:<8} fused in {:.2} s: ", start.elapsed().as_secs_f64());
-        extract(mesh, &adjacency, &patches, options.rounds)?;
-    }
-    Ok(())
-}
-
-/// Brute force and patches in turn over the 252 viewpoints of the protocol.
-fn extract(
-    mesh: &Mesh,
-    adjacency: &MeshAdjacency,
-    patches: &PatchSet,
-    rounds: u32,
-) -> Result<(), String> {
-    let viewpoints = viewpoints::protocol(mesh);
-    let agreement = compare(mesh, adjacency, patches, &viewpoints)
-        .map_err(|wrong| format!("{} disagrees with the definition", wrong.extractor))?;
-    let views = viewpoints.len().max(1) as f64;
-    let mut brute_force = BruteForce::new(mesh, adjacency, EdgeFilter::Convex);
-    let mut contours = Vec::new();
-    let (mut by_force, mut by_patches, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..rounds {
-        let start = Instant::now();
-        for &viewpoint in &viewpoints {
-            std::hint::black_box(brute_force.extract(viewpoint, &mut contours));
-        }
-        let force = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        for &viewpoint in &viewpoints {
-            std::hint::black_box(extract_patches(patches, viewpoint, &mut contours));
-        }
-        let culled = start.elapsed().as_secs_f64();
-        by_force.push(1e6 * force / views);
-        by_patches.push(1e6 * culled / views);
-        ratios.push(force / culled);
-    }
-    let [low, ratio, high] = quartiles(ratios);
-    println!(
-        "{} patches, {:.0} of {} edges tested, {:.0} contour edges; brute force {:.0} µs, \
-         patches {:.0} µs, ratio {ratio:.1} [{low:.1}, {high:.1}]",
-        patches.patches().len(),
-        agreement.edges_tested as f64 / views,
-        patches.wings().len(),
-        agreement.contour_edges as f64 / views,
-        quartiles(by_force)[1],
-        quartiles(by_patches)[1],
-    );
-    Ok(())
-}
-
-/// One drawing as `drypoint draw` makes it, stage by stage.
-fn draw(mesh: &Mesh, adjacency: &MeshAdjacency) -> Result<(), String> {
-    let page = Page { width: 1000, height: 1000, margin: 40.0 };
-    let points = mesh.positions().iter().map(|p| p.as_dvec3());
-    let camera = Camera::fit_perspective(points, DVec3::ONE, None, 30.0, page)
-        .map_err(|error| error.to_string())?;
-    let mut lap = Instant::now();
-    let mut seconds = || std::mem::replace(&mut lap, Instant::now()).elapsed().as_secs_f64();
-    let mut contours = Vec::new();
-    let filter = filter_for_drawing(mesh, adjacency, camera.viewpoint());
-    contour_edges(mesh, adjacency, camera.viewpoint(), filter, &mut contours);
-    let options = LineOptions { boundary: true, crease_angle: None };
-    let segments = Segments::new(mesh, adjacency, &contours, &options);
-    let extracted = seconds();
-    let occluders = Occluders::new(mesh, adjacency);
-    let sorted = seconds();
-    let drawing = Drawing::new(&occluders, &segments, &camera, &VisibilityParams::default());
-    let traced = seconds();
-    let bytes = to_svg(&drawing, &Style::default(), "bench").len();
-    println!(
-        "  drawing: edges {extracted:.3} s, tree of faces {sorted:.3} s, visibility {traced:.3} s, \
-         {bytes} bytes of SVG {:.3} s",
-        seconds()
-    );
-    Ok(())
-}
-
-/// Lower quartile, median and upper quartile.
-fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_unstable_by(f64::total_cmp);
-    [1, 2, 3].map(|quarter| values[(values.len() - 1) * quarter / 4])
+/// By way of a second file, so that nothing is ever half-written.
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    let fail = |error: std::io::Error| format!("{}: {error}", path.display());
+    let part = path.with_extension("part");
+    fs::write(&part, text).map_err(fail)?;
+    fs::rename(&part, path).map_err(fail)
 }

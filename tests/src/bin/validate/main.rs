@@ -5,6 +5,7 @@ mod boundary;
 mod matrix;
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -15,7 +16,7 @@ use drypoint_tests::presets;
 
 /// Compares every extractor with the definition of a contour edge, on every built-in shape and every
 /// mesh file in the folder that DRYPOINT_MODELS names, with both filters and all presets, bounds and
-/// levels, from the 252 viewpoints of the protocol, orthographic views, viewpoints near the surface,
+/// levels, and the baselines, from the 252 viewpoints of the protocol, orthographic views, viewpoints near the surface,
 /// and viewpoints on vertices, edges and planes of faces. Ends at the first disagreement with
 /// status 1.
 #[derive(Parser)]
@@ -24,9 +25,12 @@ struct Options {
     /// Only meshes whose name holds TEXT
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     only: String,
-    /// Only presets whose name holds TEXT
+    /// Only presets and baselines whose name holds TEXT
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     preset: String,
+    /// Also write what agreed, and what did not, to FILE
+    #[arg(long, value_name = "FILE", conflicts_with = "boundary")]
+    json: Option<PathBuf>,
     /// Instead, look at each patch and super-patch from its own cull boundary, a few roundings to
     /// either side, and at small meshes from 100,000 viewpoints near them
     #[arg(long)]

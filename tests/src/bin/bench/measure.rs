@@ -1,0 +1,52 @@
+//! All that is measured on a mesh.
+
+use drypoint_fusion::mesh_hash;
+use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
+use drypoint_tests::report::MeshReport;
+
+use crate::decompositions::Subject;
+use crate::kept::Kept;
+use crate::{Options, Section, calibrate, contenders, drawing};
+
+pub(crate) fn mesh(
+    name: &str,
+    mesh: &Mesh,
+    options: &Options,
+    kept: &Kept,
+) -> Result<MeshReport, String> {
+    let fail = |why: String| format!("{name}: {why}");
+    let adjacency = MeshAdjacency::new(mesh);
+    let subject = |filter| Subject::new((name, mesh, &adjacency), filter, (options, kept));
+    let (visible, all) = (subject(EdgeFilter::Convex), subject(EdgeFilter::All));
+    let rounds = options.rounds();
+    let key = format!("{:016x} {rounds}", mesh_hash(mesh));
+    let timed = |section, what: &str| options.wants(section).then(|| format!("{name}, {what}"));
+    Ok(MeshReport {
+        name: name.to_owned(),
+        faces: mesh.triangles().len(),
+        edges: adjacency.edges(EdgeFilter::Convex).count(),
+        all_edges: adjacency.edges(EdgeFilter::All).count(),
+        contours: visible.contours().map_err(fail)?,
+        partitions: visible.partitions().map_err(fail)?,
+        decompositions: visible.decompositions().map_err(fail)?,
+        of_all_edges: all.decompositions().map_err(fail)?,
+        calibration: match timed(Section::Calibration, "calibration") {
+            Some(what) => kept
+                .or_measure(&what, &key, || calibrate::measure(mesh, &adjacency, rounds))
+                .map_err(fail)?,
+            None => None,
+        },
+        times: match timed(Section::Times, "times") {
+            Some(what) => kept
+                .or_measure(&what, &key, || contenders::measure(mesh, &adjacency, rounds))
+                .map_err(fail)?,
+            None => Vec::new(),
+        },
+        drawing: match timed(Section::Drawing, "drawing") {
+            Some(what) => {
+                kept.or_measure(&what, &key, || drawing::measure(mesh, &adjacency)).map_err(fail)?
+            }
+            None => Vec::new(),
+        },
+    })
+}

@@ -1,0 +1,192 @@
+//! The report as one page that needs no other file.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::plots::{Plot, plots};
+use super::{Claim, Report, Table, claims, tables};
+
+const STYLE: &str = "
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; color: #222; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }
+th, td { padding: 0.2em 0.7em; text-align: right; border-bottom: 1px solid #ddd; }
+th:first-child, td:first-child { text-align: left; }
+figure { margin: 1.5em 0; } figcaption, .note { color: #555; font-size: 13px; }
+svg { max-width: 100%; height: auto; }
+.fails { color: #b00020; font-weight: bold; }
+code { background: #f4f4f4; padding: 0 0.2em; }
+";
+
+/// HTML with its style and its plots inside.
+///
+/// # Errors
+/// If a plot cannot be drawn.
+pub fn page(report: &Report) -> Result<String, String> {
+    let tables = tables(report);
+    let mut meshes = Vec::new();
+    for mesh in &report.meshes {
+        meshes.push((mesh, plots(mesh)?));
+    }
+    let run = &report.run;
+    let machine = &report.machine;
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Drypoint: measurements" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "Drypoint: measurements" }
+                p {
+                    "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
+                    (run.rounds) " rounds"
+                    @if run.is_quick { " (quick: small meshes and cheap methods only)" }
+                    ". Machine: " (machine.processor) ", " (machine.threads) " threads, "
+                    (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
+                    (machine.system) "."
+                }
+                p {
+                    "Contour edges are those that the exact definition gives: every extractor was compared with \
+                     it, from each of its viewpoints, before it was counted or timed. Meshes are measured in \
+                     units of half the longest side of their box."
+                }
+                @for each in tables.iter().filter(|table| table.name == "headline") { (table(each)) }
+                (claimed(&claims(report)))
+                @for (mesh, plots) in &meshes {
+                    h2 { (mesh.name) }
+                    p {
+                        (mesh.faces) " faces, " (mesh.all_edges) " edges, of which " (mesh.edges)
+                        " may be visible contours; "
+                        (format!("{:.0}", mesh.contours.far.mean)) " contour edges in a view."
+                    }
+                    @for each in tables.iter().filter(|t| t.name.starts_with(&format!("{}-", mesh.name))) {
+                        (table(each))
+                    }
+                    @for each in plots { (figure(each)) }
+                }
+            }
+        }
+    };
+    Ok(markup.into_string())
+}
+
+fn claimed(claims: &[Claim]) -> Markup {
+    html! {
+        @if !claims.is_empty() {
+            h2 { "What is claimed" }
+            ul {
+                @for claim in claims {
+                    li {
+                        (claim.what) ": " (claim.measured) " "
+                        @if claim.holds { "(holds)" } @else { span class="fails" { "(does not hold)" } " " (claim.why) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn table(table: &Table) -> Markup {
+    html! {
+        h3 id=(table.name) { (table.title) }
+        p class="note" { (table.note) }
+        table {
+            thead { tr { @for column in &table.head { th { (column) } } } }
+            tbody { @for row in &table.rows { tr { @for cell in row { td { (cell) } } } } }
+        }
+    }
+}
+
+fn figure(plot: &Plot) -> Markup {
+    html! { figure { (PreEscaped(&plot.svg)) figcaption { (plot.caption) } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use super::page;
+    use crate::judges::Tested;
+
+    /// Two groupings of a mesh of that name, the first with 100 and the second with 250 edges tested.
+    fn report(name: &str) -> Report {
+        let counts = |edges| {
+            let tested = |view: usize| Tested { bounds: 10, edges: edges + view % 7 };
+            Counts::of(&(0..50).map(tested).collect::<Vec<_>>())
+        };
+        let decomposition = |name: &str, edges| Decomposition {
+            name: name.to_owned(),
+            seconds: 0.5,
+            bounds: 10,
+            radius: Some(0.25),
+            half_angle: 0.5,
+            tested: Views { far: counts(edges), near: counts(edges), spiral: counts(edges) },
+        };
+        let contours = || Sample::of((0..50).map(|view| 30 + view % 5));
+        Report {
+            machine: Machine {
+                processor: "<any> & all".to_owned(),
+                threads: 2,
+                instructions: "Avx2".to_owned(),
+                memory: 8.0,
+                system: "Linux".to_owned(),
+            },
+            run: Run {
+                version: "0".to_owned(),
+                commit: "unknown".to_owned(),
+                command: "bench".to_owned(),
+                rounds: 2,
+                is_quick: true,
+            },
+            meshes: vec![MeshReport {
+                name: name.to_owned(),
+                faces: 700,
+                edges: 1000,
+                all_edges: 1050,
+                contours: Views { far: contours(), near: contours(), spiral: contours() },
+                partitions: Vec::new(),
+                decompositions: vec![decomposition(OURS, 100), decomposition(MESHLETS, 250)],
+                of_all_edges: Vec::new(),
+                calibration: None,
+                times: Vec::new(),
+                drawing: Vec::new(),
+            }],
+        }
+    }
+
+    #[test]
+    fn tables_plots_and_claims_are_on_the_page() {
+        let page = page(&report("stanford-bunny")).unwrap();
+        for text in [
+            "&lt;any&gt; &amp; all",
+            "<td>103</td>",
+            "patches, DEFAULT test fewer edges than meshlets",
+            "What is claimed",
+        ] {
+            assert!(page.contains(text), "no {text} in {page}");
+        }
+        assert_eq!(page.matches("<svg").count(), 4);
+        // In each plot by name, and contour edges in one.
+        assert_eq!(page.matches("\nmeshlets\n</text>").count(), 4);
+        assert_eq!(page.matches("\ncontour edges\n</text>").count(), 1);
+    }
+
+    #[test]
+    fn a_summary_has_the_same_tables_and_no_plots() {
+        let report = report("cube");
+        let summary = report.clone().summary();
+        assert_eq!(tables(&summary), tables(&report));
+        assert!(!page(&summary).unwrap().contains("<svg"));
+        assert!(claims(&report).is_empty());
+    }
+
+    #[test]
+    fn a_claim_that_does_not_hold_is_said_not_to() {
+        let mut report = report("stanford-bunny");
+        report.meshes[0].decompositions[0].tested.far.edges.mean = 300.0;
+        let failed: Vec<Claim> = claims(&report).into_iter().filter(|claim| !claim.holds).collect();
+        assert_eq!(failed.len(), 2, "{failed:?}");
+        assert!(page(&report).unwrap().contains("(does not hold)"));
+    }
+}

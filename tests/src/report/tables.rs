@@ -1,0 +1,252 @@
+//! The tables of a report, for a page and for Markdown.
+
+use super::paper::FIGURES;
+use super::{Calibration, Decomposition, MeshReport, Partition, Quartiles, Report};
+
+/// A table of text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// A name without spaces: of the mesh, and of what is in it.
+    pub name: String,
+    /// A heading.
+    pub title: String,
+    /// What it shows, in sentences.
+    pub note: &'static str,
+    /// Of the columns.
+    pub head: Vec<&'static str>,
+    /// Each as long as the head.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// All tables that have a row.
+pub fn tables(report: &Report) -> Vec<Table> {
+    let tables = [headline(report)].into_iter().chain(report.meshes.iter().flat_map(of_mesh));
+    tables.filter(|table| !table.rows.is_empty()).collect()
+}
+
+/// A row for each mesh whose views were timed.
+fn headline(report: &Report) -> Table {
+    let row = |mesh: &MeshReport| {
+        let patches = format!("patches, ids, {}", report.machine.instructions);
+        let patches = mesh.times.iter().find(|time| time.name == patches)?;
+        let (naive, brute_force) = (mesh.times.first()?, mesh.best_brute_force()?);
+        let against = |other: &super::Time| {
+            let times = patches.speed_up.median / other.speed_up.median;
+            format!("{} µs ({times:.1} ×)", micros(other.micros))
+        };
+        let patches = format!("{} µs", micros(patches.micros));
+        let edges = count(mesh.edges as f64);
+        Some(vec![mesh.name.clone(), edges, patches, against(brute_force), against(naive)])
+    };
+    Table {
+        name: "headline".to_owned(),
+        title: "A view through patches".to_owned(),
+        note: "Median time of a view, one thread, edge ids, and how many times as fast patches are.",
+        head: vec!["mesh", "edges", "patches", "best brute force", "naive loop"],
+        rows: report.meshes.iter().filter_map(row).collect(),
+    }
+}
+
+fn of_mesh(mesh: &MeshReport) -> impl Iterator<Item = Table> {
+    counted(mesh).into_iter().chain(timed(mesh))
+}
+
+fn table(
+    mesh: &MeshReport,
+    [name, title]: [&str; 2],
+    note: &'static str,
+    head: &[&'static str],
+    rows: Vec<Vec<String>>,
+) -> Table {
+    Table {
+        name: format!("{}-{name}", mesh.name),
+        title: format!("{}: {title}", mesh.name),
+        note,
+        head: head.to_vec(),
+        rows,
+    }
+}
+
+const GROUPED: &[&str] = &[
+    "edges grouped by",
+    "bounds",
+    "mean r",
+    "mean α",
+    "bounds tested",
+    "edges tested",
+    "of all",
+    "cost",
+    "near: bounds",
+    "near: edges",
+    "s",
+];
+
+const GROUPED_NOTE: &str = "Means of the 252 viewpoints of TB24 §4.3, and of those near the surface. r in units \
+    of half the longest side; for a bound without a sphere it is t cos α, which is r where there is one. \
+    Cost: 1.363 for each bound tested and 1 for each edge (TB24 §4.2). Seconds of wall time on all threads. \
+    After TB24, Table 2.";
+
+/// What views test.
+fn counted(mesh: &MeshReport) -> [Table; 3] {
+    [
+        table(
+            mesh,
+            ["partitions", "the published method, by the size of its groups"],
+            "At most c_max edges are fused as one group (TB24 §3.3, Table 1). Reduced Spheres.",
+            &["c_max", "patches", "bounds tested", "edges tested", "cost", "s"],
+            mesh.partitions.iter().map(partition).collect(),
+        ),
+        table(
+            mesh,
+            ["decompositions", "patches, meshlets and hierarchies"],
+            GROUPED_NOTE,
+            GROUPED,
+            mesh.decompositions.iter().map(|each| grouped(each, mesh.edges)).collect(),
+        ),
+        table(
+            mesh,
+            ["all-edges", "all edges, concave ones too"],
+            GROUPED_NOTE,
+            GROUPED,
+            mesh.of_all_edges.iter().map(|each| grouped(each, mesh.all_edges)).collect(),
+        ),
+    ]
+}
+
+/// What that takes, and what papers say of both.
+fn timed(mesh: &MeshReport) -> [Table; 4] {
+    let stage =
+        |(stage, seconds): &(String, f64)| vec![stage.clone(), format!("{:.1}", 1e3 * seconds)];
+    let figures = FIGURES.iter().filter(|figure| figure.mesh == mesh.name);
+    [
+        table(
+            mesh,
+            ["calibration", "what the cost model is made of"],
+            "Medians and quartiles over 51 of the viewpoints, exact predicates throughout (TB24 §4.2, Table 3).",
+            &["t_e", "t_P / t_e", "t_A / t_e"],
+            mesh.calibration.iter().map(calibration).collect(),
+        ),
+        table(
+            mesh,
+            ["times", "time of a view"],
+            "One after the other in each round, from the 252 viewpoints; medians, and medians of ratios with \
+             quartiles. After TB24, Table 4.",
+            &["extractor", "µs", "over the first", "over the best brute force"],
+            times(mesh),
+        ),
+        table(
+            mesh,
+            ["drawing", "a drawing, stage by stage"],
+            "As `drypoint draw` makes it, 1000 × 1000 pixels.",
+            &["stage", "ms"],
+            mesh.drawing.iter().map(stage).collect(),
+        ),
+        table(
+            mesh,
+            ["papers", "what papers report"],
+            "TB24: Tsiapkolis and Bénard, CGF 43(4), 2024. S00: Sander et al., SIGGRAPH 2000.",
+            &["figure", "value", "source", "how it differs"],
+            figures
+                .map(|f| [f.what, f.value, f.source, f.differs].map(str::to_owned).to_vec())
+                .collect(),
+        ),
+    ]
+}
+
+fn partition(partition: &Partition) -> Vec<String> {
+    vec![
+        partition.edges.map_or("all".to_owned(), |edges| count(f64::from(edges))),
+        count(partition.patches as f64),
+        count(partition.tested.bounds.mean),
+        count(partition.tested.edges.mean),
+        count(partition.tested.cost()),
+        seconds(partition.seconds),
+    ]
+}
+
+fn grouped(grouped: &Decomposition, edges: usize) -> Vec<String> {
+    let (far, near) = (&grouped.tested.far, &grouped.tested.near);
+    vec![
+        grouped.name.clone(),
+        count(grouped.bounds as f64),
+        grouped.radius.map_or(String::new(), |radius| format!("{radius:.4}")),
+        format!("{:.2}°", grouped.half_angle.to_degrees()),
+        count(far.bounds.mean),
+        count(far.edges.mean),
+        format!("{:.1} %", 100.0 * far.edges.mean / edges.max(1) as f64),
+        count(far.cost()),
+        count(near.bounds.mean),
+        count(near.edges.mean),
+        seconds(grouped.seconds),
+    ]
+}
+
+fn calibration(calibration: &Calibration) -> Vec<String> {
+    let Calibration { edge, patch_test, accepted_patch } = calibration;
+    vec![
+        format!("{:.1} ns [{:.1}, {:.1}]", edge.median, edge.low, edge.high),
+        three_digits(patch_test),
+        three_digits(accepted_patch),
+    ]
+}
+
+fn times(mesh: &MeshReport) -> Vec<Vec<String>> {
+    let best = mesh.best_brute_force().map_or(1.0, |best| best.speed_up.median);
+    let row = |time: &super::Time| {
+        let Quartiles { low, median, high } = time.speed_up;
+        vec![
+            time.name.clone(),
+            micros(time.micros),
+            format!("{median:.1} [{low:.1}, {high:.1}]"),
+            format!("{:.2}", median / best),
+        ]
+    };
+    mesh.times.iter().map(row).collect()
+}
+
+fn three_digits(Quartiles { low, median, high }: &Quartiles) -> String {
+    format!("{median:.3} [{low:.3}, {high:.3}]")
+}
+
+/// Three significant digits or more.
+fn micros(micros: f64) -> String {
+    if micros < 100.0 { format!("{micros:.1}") } else { count(micros) }
+}
+
+fn seconds(seconds: f64) -> String {
+    if seconds < 10.0 { format!("{seconds:.2}") } else { format!("{seconds:.0}") }
+}
+
+/// A whole number, with commas between thousands.
+pub(crate) fn count(number: f64) -> String {
+    let digits = format!("{number:.0}");
+    let first = digits.len() % 3;
+    let mut text = digits[..first].to_owned();
+    for (index, three) in digits.as_bytes()[first..].chunks(3).enumerate() {
+        if index > 0 || first > 0 {
+            text.push(',');
+        }
+        text.extend(three.iter().map(|&digit| char::from(digit)));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        let cases = [
+            (0.0, "0"),
+            (7.4, "7"),
+            (999.5, "1,000"),
+            (1_000.0, "1,000"),
+            (61_997.0, "61,997"),
+            (123_456_789.0, "123,456,789"),
+        ];
+        for (number, text) in cases {
+            assert_eq!(count(number), text);
+        }
+    }
+}
