@@ -1,5 +1,6 @@
 //! What ran, and where.
 
+use clap::ValueEnum;
 use drypoint_cpu::Instructions;
 use drypoint_tests::report::{Machine, Run};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
@@ -24,19 +25,21 @@ pub(crate) fn machine() -> Machine {
 }
 
 pub(crate) fn run(options: &Options) -> Run {
-    let arguments = std::env::args().skip(1).map(|argument| {
-        // Of paths, the name only: where files lie is nobody's business.
-        let name = std::path::Path::new(&argument).file_name().map(|name| name.to_string_lossy());
-        name.map_or_else(|| argument.clone(), |name| name.into_owned())
-    });
+    let mut command = "cargo xtask bench".to_owned();
+    for (is_on, option) in [(options.quick, " --quick"), (options.fresh, " --fresh")] {
+        command += if is_on { option } else { "" };
+    }
+    for section in options.only.iter().filter_map(ValueEnum::to_possible_value) {
+        command += &format!(" --only {}", section.get_name());
+    }
+    // The names only: where files lie is nobody's business.
+    for name in options.files.iter().filter_map(|path| path.file_name()) {
+        command += &format!(" {}", name.to_string_lossy());
+    }
     Run {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: commit().to_owned(),
-        command: ["cargo xtask bench".to_owned()]
-            .into_iter()
-            .chain(arguments)
-            .collect::<Vec<_>>()
-            .join(" "),
+        command,
         rounds: options.rounds(),
         is_quick: options.quick,
     }

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum, value_parser};
 use drypoint_mesh::{io, shapes};
 use drypoint_tests::models;
-use drypoint_tests::report::{MeshReport, Report, blocks, page};
+use drypoint_tests::report::{Report, blocks, page};
 
 use crate::kept::Kept;
 
@@ -47,6 +47,10 @@ struct Options {
     /// marked tables of its documents
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
+    /// Measure nothing: make the page and the tables from a report.json, or from the repository's
+    /// docs/measurements.json, which has no plots
+    #[arg(long, value_name = "REPORT", conflicts_with_all = ["quick", "rounds", "only", "fresh", "files"])]
+    from: Option<PathBuf>,
     /// Mesh files
     #[arg(value_name = "MESH FILE")]
     files: Vec<PathBuf>,
@@ -94,10 +98,13 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), String> {
-    let files = files(options)?;
     if let Some(repository) = &options.docs {
         documents::find(repository)?;
     }
+    if let Some(path) = &options.from {
+        return finish(options, &read(path)?);
+    }
+    let files = files(options)?;
     let kept = Kept::new(options)?;
     let mut meshes = Vec::new();
     for path in &files {
@@ -111,7 +118,13 @@ fn run(options: &Options) -> Result<(), String> {
             meshes.push(measure::mesh(name, &mesh, options, &kept)?);
         }
     }
-    finish(options, meshes)
+    finish(options, &Report { machine: machine::machine(), run: machine::run(options), meshes })
+}
+
+/// A report of an earlier run.
+fn read(path: &Path) -> Result<Report, String> {
+    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    serde_json::from_str(&text).map_err(|error| format!("{}: no report: {error}", path.display()))
 }
 
 /// Mesh files to measure; none for the built-in shapes.
@@ -130,16 +143,17 @@ fn files(options: &Options) -> Result<Vec<PathBuf>, String> {
 }
 
 /// Writes the report, whole or not at all.
-fn finish(options: &Options, meshes: Vec<MeshReport>) -> Result<(), String> {
-    let report = Report { machine: machine::machine(), run: machine::run(options), meshes };
-    let json = serde_json::to_string(&report).map_err(|error| error.to_string())?;
+fn finish(options: &Options, report: &Report) -> Result<(), String> {
+    let fail = |error: std::io::Error| format!("{}: {error}", options.output.display());
+    fs::create_dir_all(&options.output).map_err(fail)?;
+    let json = serde_json::to_string(report).map_err(|error| error.to_string())?;
     write(&options.output.join("report.json"), &json)?;
     let html = options.output.join("report.html");
-    write(&html, &page(&report)?)?;
+    write(&html, &page(report)?)?;
     if let Some(repository) = &options.docs {
         documents::update(repository, report.clone())?;
     }
-    for (name, block) in blocks(&report) {
+    for (name, block) in blocks(report) {
         println!("{name}\n\n{block}");
     }
     println!("{}", html.display());
