@@ -45,9 +45,7 @@ pub struct Agreement {
     pub viewpoints: usize,
     /// Contour edges found, over all viewpoints.
     pub contour_edges: usize,
-    /// Bounds that were tested, of patches and super-patches, over all viewpoints.
-    pub bounds_tested: usize,
-    /// Edges that patches tested, over all viewpoints.
+    /// Edges that were tested, over all viewpoints.
     pub edges_tested: usize,
 }
 
@@ -58,7 +56,6 @@ impl std::ops::Add for Agreement {
         Self {
             viewpoints: self.viewpoints + other.viewpoints,
             contour_edges: self.contour_edges + other.contour_edges,
-            bounds_tested: self.bounds_tested + other.bounds_tested,
             edges_tested: self.edges_tested + other.edges_tested,
         }
     }
@@ -148,7 +145,6 @@ impl Expected {
             Ok(Agreement {
                 viewpoints: 1,
                 contour_edges: expected.len(),
-                bounds_tested: statistics.super_patches_tested + statistics.patches_tested,
                 edges_tested: statistics.edges_tested,
             })
         };
@@ -192,7 +188,6 @@ impl Expected {
         Ok(Agreement {
             viewpoints: tested.len(),
             contour_edges: self.counts().sum(),
-            bounds_tested: tested.iter().map(|view| view.bounds).sum(),
             edges_tested: tested.iter().map(|view| view.edges).sum(),
         })
     }

@@ -77,7 +77,12 @@ fn what_cannot_be_measured_is_said_and_nothing_is_written() {
         assert!(!folder.path().join("out/report.json").exists());
     };
     check(&["-o", "out", "missing.obj"], "missing.obj: cannot be read");
-    check(&["-o", "out", "--docs", "nowhere", "x.obj"], "--docs: no file nowhere");
+    check(&["-o", "out", "--docs", "nowhere", "x.obj"], "--docs: nowhere");
+    check(&["-o", "out", "a/x.obj", "b/x.ply"], "two meshes have the name x");
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    check(&["-o", "out", "--docs", root, "x.obj"], "no mesh is given for the mark");
+    check(&["-o", "out", "--docs", root, "--quick"], "no --quick");
+    check(&["-o", "out", "--from", "none.json"], "none.json");
     check(&["-o", "out", "--rounds", "0"], "--rounds");
 }
 
@@ -96,6 +101,8 @@ fn validation_says_what_agreed() {
     for name in ["fast", "snch", "anchored-cones", "meshlets"] {
         assert!(rows.iter().any(|row| row["grouped_by"] == name), "{name}");
     }
-    let output = run(env!("CARGO_BIN_EXE_validate"), &["--only", "no such mesh"], folder.path());
-    assert!(!output.status.success());
+    for nothing in [["--only", "no such mesh"], ["--preset", "no such preset"]] {
+        let output = run(env!("CARGO_BIN_EXE_validate"), &nothing, folder.path());
+        assert!(!output.status.success(), "{nothing:?}");
+    }
 }

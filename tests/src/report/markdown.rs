@@ -7,7 +7,7 @@ use super::{Report, claims, tables};
 const START: &str = "<!-- measured: ";
 const END: &str = "<!-- end -->";
 
-/// What belongs between marks, by name: a table for each of [`tables`], `machine`, and `claims`.
+/// What belongs between marks, by name: a table for each of [`tables`], `machine` and `claims`.
 pub fn blocks(report: &Report) -> Vec<(String, String)> {
     let mut blocks: Vec<(String, String)> =
         tables(report).iter().map(|table| (table.name.clone(), markdown(table))).collect();
@@ -28,7 +28,8 @@ pub fn blocks(report: &Report) -> Vec<(String, String)> {
         ),
     ));
     let claim = |claim: &super::Claim| {
-        let (holds, why) = if claim.holds { ("holds", "") } else { ("does not hold", claim.why) };
+        let (holds, why) =
+            if claim.holds { ("holds", "") } else { ("does not hold", &claim.why[..]) };
         format!("- {}: {} ({holds}). {why}", claim.what, claim.measured).trim_end().to_owned()
     };
     let lines: Vec<String> = claims(report).iter().map(claim).collect();
@@ -43,6 +44,11 @@ fn markdown(table: &Table) -> String {
         text += &format!("| {} |\n", row.join(" | "));
     }
     text
+}
+
+/// The names of the marks in `document`.
+pub fn marks(document: &str) -> impl Iterator<Item = &str> {
+    document.split(START).skip(1).filter_map(|marked| Some(marked.split_once(" -->")?.0))
 }
 
 /// `document` with every marked block made anew.
@@ -62,7 +68,8 @@ pub fn replace_blocks(document: &str, blocks: &[(String, String)]) -> Result<Str
             .iter()
             .find(|(block, _)| block == name)
             .ok_or_else(|| format!("nothing was measured for the mark {name:?}"))?;
-        let end = inside.find(END).ok_or_else(|| format!("the mark {name:?} has no {END}"))?;
+        let end = inside.find(END).filter(|&end| inside.find(START).is_none_or(|next| end < next));
+        let end = end.ok_or_else(|| format!("the mark {name:?} has no {END}"))?;
         text += &format!("{before}{START}{name} -->\n{content}");
         rest = &inside[end..];
     }
@@ -102,6 +109,10 @@ mod tests {
             Err("nothing was measured for the mark \"c\""),
         );
         check("<!-- measured: a -->\nold\n", Err("the mark \"a\" has no <!-- end -->"));
+        check(
+            "<!-- measured: a -->\nold\n<!-- measured: b -->\n<!-- end -->\n",
+            Err("the mark \"a\" has no <!-- end -->"),
+        );
         check("<!-- measured: a\nold\n", Err("a mark that does not end: <!-- measured: a"));
     }
 }

@@ -49,8 +49,17 @@ pub fn page(report: &Report) -> Result<String, String> {
                 }
                 p {
                     "Contour edges are those that the exact definition gives: every extractor was compared with \
-                     it, from each of its viewpoints, before it was counted or timed. Meshes are measured in \
-                     units of half the longest side of their box."
+                     it, from each of its viewpoints, before it was counted or timed, but for the naive loop, \
+                     which is inexact, and the floor. Lengths are in units of half the longest side of a \
+                     mesh's box."
+                }
+                p class="note" {
+                    "Bounds are those of patches and super-patches, of nodes of a hierarchy, or of meshlets. FAST, \
+                     DEFAULT, BEST and NEAR are presets of patches; TB24 is the published method, of Tsiapkolis and \
+                     Bénard, CGF 43(4), 2024; SNCH is the hierarchy of Johnson and Cohen, I3D 2001; anchored cones \
+                     are the forest of Sander et al., SIGGRAPH 2000 (S00); meshlets are those of meshoptimizer. \
+                     Only the rows that say \"exact predicates\" compare methods like for like: none but patches \
+                     and brute force has kernels."
                 }
                 @for each in tables.iter().filter(|table| table.name == "headline") { (table(each)) }
                 (claimed(&claims(report)))
@@ -61,7 +70,7 @@ pub fn page(report: &Report) -> Result<String, String> {
                         " may be visible contours; "
                         (format!("{:.0}", mesh.contours.far.mean)) " contour edges in a view."
                     }
-                    @for each in tables.iter().filter(|t| t.name.starts_with(&format!("{}-", mesh.name))) {
+                    @for each in tables.iter().filter(|table| table.mesh.as_ref() == Some(&mesh.name)) {
                         (table(each))
                     }
                     @for each in plots { (figure(each)) }
@@ -161,7 +170,7 @@ mod tests {
         for text in [
             "&lt;any&gt; &amp; all",
             "<td>103</td>",
-            "patches, DEFAULT test fewer edges than meshlets",
+            "patches (DEFAULT) test fewer edges than meshlets",
             "What is claimed",
         ] {
             assert!(page.contains(text), "no {text} in {page}");

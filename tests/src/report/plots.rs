@@ -2,6 +2,7 @@
 
 use plotters::prelude::*;
 
+use super::claims::{CONES, MESHLETS, OURS, SNCH, TB24, TWO_LEVELS};
 use super::tables::count;
 use super::{Counts, Decomposition, MeshReport, PATCH_TEST, Sample};
 
@@ -17,6 +18,9 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(90, 90, 90),
 ];
+
+/// What is drawn along the spiral: no more lines than there are colors, with contour edges.
+const ALONG: [&str; 6] = [OURS, TWO_LEVELS, TB24, SNCH, CONES, MESHLETS];
 
 /// A picture, and what it shows.
 #[derive(Clone, Debug)]
@@ -40,7 +44,8 @@ pub(crate) fn plots(mesh: &MeshReport) -> Result<Vec<Plot>, String> {
     };
     let spiral = |value: &dyn Fn(&Counts) -> Vec<f64>| -> Vec<(String, Vec<f64>)> {
         let line = |each: &Decomposition| (each.name.clone(), value(&each.tested.spiral));
-        mesh.decompositions.iter().filter(|each| each.name != "patches, FAST").map(line).collect()
+        let drawn = ALONG.iter().filter_map(|name| mesh.decomposition(name));
+        drawn.map(line).collect()
     };
     let mut edges_along = spiral(&|counts| numbers(&counts.edges));
     edges_along.push(("contour edges".to_owned(), numbers(&mesh.contours.spiral)));
@@ -51,8 +56,8 @@ pub(crate) fn plots(mesh: &MeshReport) -> Result<Vec<Plot>, String> {
     };
     let drawn = [
         (
-            "Edges tested, per cent of all, over the 252 viewpoints: quartiles, and what lies within 1.5 times \
-             their distance (after TB24, Figure 4).",
+            "Edges tested, per cent of all, over the 252 viewpoints: boxes are quartiles, and whiskers reach 1.5 \
+             times their distance beyond, whether or not there are views (after TB24, Figure 4).",
             boxes("edges tested, %", &shares(&|each| each.tested.far.edges.clone())),
         ),
         (
@@ -84,7 +89,8 @@ fn numbers(sample: &Sample) -> Vec<f64> {
 /// One horizontal box for each; none without numbers.
 fn boxes(axis: &str, samples: &[(String, Vec<f64>)]) -> Result<Option<String>, Failed> {
     let samples: Vec<_> = samples.iter().filter(|(_, values)| !values.is_empty()).collect();
-    let most = samples.iter().flat_map(|(_, values)| values).copied().fold(0.0, f64::max);
+    let upper_end = |values: &[f64]| plotters::data::Quartiles::new(values).values()[4];
+    let most = samples.iter().map(|(_, values)| upper_end(values)).fold(0.0, f32::max);
     if most == 0.0 {
         return Ok(None);
     }
@@ -94,12 +100,11 @@ fn boxes(axis: &str, samples: &[(String, Vec<f64>)]) -> Result<Option<String>, F
         #[expect(clippy::cast_possible_truncation, reason = "a few")]
         let area = SVGBackend::with_string(&mut svg, (820, 70 + 34 * names.len() as u32));
         let area = area.into_drawing_area();
-        #[expect(clippy::cast_possible_truncation, reason = "boxes are drawn in f32")]
         let mut chart = ChartBuilder::on(&area)
             .margin(8)
             .x_label_area_size(38)
             .y_label_area_size(190)
-            .build_cartesian_2d(0.0..1.05 * most as f32, names[..].into_segmented())?;
+            .build_cartesian_2d(0.0..1.05 * most, names[..].into_segmented())?;
         let name = |value: &SegmentValue<&&str>| match value {
             SegmentValue::CenterOf(name) => (**name).to_string(),
             SegmentValue::Exact(_) | SegmentValue::Last => String::new(),
@@ -150,7 +155,7 @@ fn lines(axis: &str, series: &[(String, Vec<f64>)]) -> Result<Option<String>, Fa
             .draw()?;
         for (index, (name, values)) in series.iter().enumerate() {
             let color = COLORS[index % COLORS.len()];
-            let style = color.stroke_width(if index < COLORS.len() { 1 } else { 2 });
+            let style = color.stroke_width(1);
             let points = values.iter().copied().enumerate();
             let swatch =
                 move |(x, y)| Rectangle::new([(x, y - 4), (x + 14, y + 4)], color.filled());

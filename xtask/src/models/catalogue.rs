@@ -271,7 +271,8 @@ mod tests {
     #[test]
     fn the_files_at_hand_are_the_ones_described() {
         let Some(folder) = super::super::named_folder() else { return };
-        for mesh in MESHES {
+        // Of others, a copy from elsewhere may differ.
+        for mesh in MESHES.iter().filter(|mesh| mesh.download.is_some()) {
             let state = state(mesh, &folder.join(mesh.name));
             assert!(matches!(state, State::Missing | State::Present), "{}: {state:?}", mesh.name);
         }

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use drypoint_baselines::{AnchoredCones, Meshlets, Snch};
+use drypoint_baselines::{AnchoredCones, Meshlets, Snch, SnchParams};
 use drypoint_cpu::{
     Batch, BruteForce, Extractor, FaceSigns, FaceStrips, Instructions, StoredPlanes,
     extract_all_wings, extract_naively, extract_patches,
@@ -41,18 +41,16 @@ pub(crate) fn measure(
     adjacency: &MeshAdjacency,
     rounds: u32,
 ) -> Result<Vec<Time>, String> {
-    let viewpoints = viewpoints::protocol(mesh);
-    // As cameras have them.
-    let rounded = |viewpoint: &Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
-    let rounded: Vec<Viewpoint> = viewpoints.iter().map(rounded).collect();
+    // In f32, as cameras have them.
+    let rounded = |viewpoint: Viewpoint| Viewpoint::at(viewpoint.xyz().as_vec3().as_dvec3());
+    let viewpoints: Vec<Viewpoint> = viewpoints::protocol(mesh).into_iter().map(rounded).collect();
     let filter = EdgeFilter::Convex;
-    let both = [&viewpoints[..], &rounded[..]].concat();
     let expected =
-        Expected::new(mesh, adjacency, filter, &both).map_err(|wrong| wrong.to_string())?;
+        Expected::new(mesh, adjacency, filter, &viewpoints).map_err(|wrong| wrong.to_string())?;
     let sets = Sets::new(mesh, adjacency, &expected)?;
     let judges = Judges::new(mesh, adjacency, &expected)?;
-    let [newest, of_default] = [&sets.patches, &sets.by_paper].map(Extractor::new);
-    let mut contenders = exact_ones(mesh, adjacency, &sets.patches);
+    let [newest, by_paper] = [&sets.patches, &sets.by_paper].map(Extractor::new);
+    let mut contenders = exact_ones(mesh, adjacency, &sets);
     contenders.extend(judges.contenders());
     for instructions in Instructions::ALL.into_iter().filter(|set| set.are_here()) {
         contenders.extend(brute_forces(mesh, adjacency, instructions));
@@ -75,21 +73,15 @@ pub(crate) fn measure(
     }
     let name = format!("patches, ids, {set}, made for the paper's costs");
     contenders.push(contender(name, |view, found| {
-        of_default.edges(view, found);
+        by_paper.edges(view, found);
     }));
-    let mut in_f64 = contender(format!("patches, ids, {set}, viewpoints in f64"), |view, found| {
-        newest.edges(view, found);
-    });
-    let mut look = in_f64.look;
-    in_f64.look = Box::new(move |rounded| look(&viewpoints[..rounded.len()]));
-    contenders.push(in_f64);
-    let mut floor = Floor::new(&sets.patches, &rounded);
+    let mut floor = Floor::new(&sets.patches, &viewpoints);
     contenders.push(Contender {
         name: "floor: ids written, of accepted blocks that are read".to_owned(),
         is_brute_force: false,
         look: Box::new(move |viewpoints| floor.look(viewpoints)),
     });
-    Ok(in_turn(&mut contenders, &rounded, rounds))
+    Ok(in_turn(&mut contenders, &viewpoints, rounds))
 }
 
 /// Patches, compared with the definition by every kernel.
@@ -117,14 +109,16 @@ impl Sets {
 }
 
 /// What others have published.
-struct Judges<'a>([(&'static str, Box<dyn Judge + 'a>); 3]);
+struct Judges<'a>([(&'static str, Box<dyn Judge + 'a>); 4]);
 
 impl<'a> Judges<'a> {
     /// Compared with the definition.
     fn new(mesh: &'a Mesh, adjacency: &MeshAdjacency, expected: &Expected) -> Result<Self, String> {
         let filter = EdgeFilter::Convex;
-        let judges: [(_, Box<dyn Judge + 'a>); 3] = [
+        let single = SnchParams { edges_per_leaf: 1 };
+        let judges: [(_, Box<dyn Judge + 'a>); 4] = [
             ("SNCH", Box::new(Snch::new(mesh, adjacency, filter, &Default::default()))),
+            ("SNCH, an edge in a leaf", Box::new(Snch::new(mesh, adjacency, filter, &single))),
             (
                 "anchored cones",
                 Box::new(AnchoredCones::new(mesh, adjacency, filter, &Default::default())),
@@ -164,11 +158,8 @@ where
 }
 
 /// The naive loop, and those with exact predicates throughout.
-fn exact_ones<'a>(
-    mesh: &'a Mesh,
-    adjacency: &MeshAdjacency,
-    patches: &'a PatchSet,
-) -> Vec<Contender<'a>> {
+fn exact_ones<'a>(mesh: &'a Mesh, adjacency: &MeshAdjacency, sets: &'a Sets) -> Vec<Contender<'a>> {
+    let Sets { patches, by_paper, two_levels } = sets;
     let mut by_face = BruteForce::new(mesh, adjacency, EdgeFilter::Convex);
     vec![
         contender("every edge in f32, normals from vertices, inexact", |viewpoint, found| {
@@ -180,8 +171,14 @@ fn exact_ones<'a>(
         contender("every face, then every edge, exact predicates", move |viewpoint, found| {
             by_face.extract(viewpoint, found);
         }),
-        contender("patches, exact predicates", |viewpoint, found| {
+        contender("patches (DEFAULT), exact predicates", |viewpoint, found| {
+            extract_patches(by_paper, viewpoint, found);
+        }),
+        contender("patches made for kernels, exact predicates", |viewpoint, found| {
             extract_patches(patches, viewpoint, found);
+        }),
+        contender("the same on two levels, exact predicates", |viewpoint, found| {
+            extract_patches(two_levels, viewpoint, found);
         }),
     ]
 }
@@ -266,10 +263,20 @@ fn in_turn(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u
             times.push(1e6 * start.elapsed().as_secs_f64() / viewpoints.len().max(1) as f64);
         }
     }
+    let median = |own: &[f64]| Quartiles::of(own.iter().copied()).median;
+    let brute_forces = contenders.iter().zip(&times).filter(|(each, _)| each.is_brute_force);
+    let best = brute_forces
+        .map(|(_, own)| own)
+        .min_by(|a, b| median(a).total_cmp(&median(b)))
+        .unwrap_or(&times[0]);
+    let over = |others: &[f64], own: &[f64]| {
+        Quartiles::of(others.iter().zip(own).map(|(other, own)| other / own))
+    };
     let time = |(contender, own): (&Contender<'_>, &Vec<f64>)| Time {
         name: contender.name.clone(),
-        micros: Quartiles::of(own.iter().copied()).median,
-        speed_up: Quartiles::of(times[0].iter().zip(own).map(|(first, own)| first / own)),
+        micros: median(own),
+        speed_up: over(&times[0], own),
+        over_brute_force: over(best, own),
         is_brute_force: contender.is_brute_force,
     };
     contenders.iter().zip(&times).map(time).collect()

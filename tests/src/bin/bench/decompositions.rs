@@ -11,8 +11,8 @@ use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint};
 use drypoint_tests::compare::Expected;
 use drypoint_tests::judges::{Judge, Tested};
 use drypoint_tests::report::{
-    CONES, Counts, Decomposition, MESHLETS, OURS, Partition, SNCH, SNCH_SINGLE, Sample, TWO_LEVELS,
-    Views,
+    CONES, Counts, Decomposition, FAST, MESHLETS, OURS, Partition, SNCH, SNCH_SINGLE, Sample, TB24,
+    TWO_LEVELS, Views,
 };
 use drypoint_tests::viewpoints;
 
@@ -130,7 +130,7 @@ impl<'a> Subject<'a> {
                     .far
                     .watch("patches", &set)
                     .map_err(|wrong| wrong.to_string())?;
-                let (edges, patches) = (Some(edges), set.patches().len());
+                let patches = set.patches().len();
                 Ok(Partition { edges, seconds, patches, tested: Counts::of(&tested) })
             })
         };
@@ -154,10 +154,10 @@ impl<'a> Subject<'a> {
         let (is_quick, is_medium) = (self.options.quick, edges <= MEDIUM);
         let default = FusionParams::DEFAULT;
         let mut ways = vec![
-            ("patches, FAST", Way::Fused(FusionParams::FAST)),
+            (FAST, Way::Fused(FusionParams::FAST)),
             (OURS, Way::Fused(default)),
             (TWO_LEVELS, Way::Fused(FusionParams { levels: Levels::Two, ..default })),
-            ("patches, NEAR", Way::Fused(FusionParams { views: ViewProfile::NEAR, ..default })),
+            ("patches (NEAR)", Way::Fused(FusionParams { views: ViewProfile::NEAR, ..default })),
             (SNCH, Way::Snch(SnchParams::default().edges_per_leaf)),
             (CONES, Way::AnchoredCones),
             (MESHLETS, Way::Meshlets),
@@ -168,9 +168,9 @@ impl<'a> Subject<'a> {
         } else if !is_quick {
             ways.push((SNCH_SINGLE, Way::Snch(1)));
             ways.push(("TB24, Mean Sphere", Way::Fused(FusionParams::PAPER_MEAN)));
-            ways.push(("TB24, Reduced Sphere", Way::Fused(FusionParams::PAPER)));
+            ways.push((TB24, Way::Fused(FusionParams::PAPER)));
             if is_medium {
-                ways.insert(2, ("patches, BEST", Way::Fused(FusionParams::BEST)));
+                ways.insert(2, ("patches (BEST)", Way::Fused(FusionParams::BEST)));
             }
         }
         ways

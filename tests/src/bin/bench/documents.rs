@@ -3,17 +3,32 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use drypoint_tests::report::{DOCUMENTS, Report, SUMMARY, blocks, replace_blocks};
+use drypoint_tests::report::{DOCUMENTS, Report, SUMMARY, blocks, marks, replace_blocks};
 
-use crate::write;
+use crate::{Options, name, write};
 
-/// Whether this is the repository.
-pub(crate) fn find(repository: &Path) -> Result<Vec<PathBuf>, String> {
-    let paths: Vec<PathBuf> = DOCUMENTS.iter().map(|document| repository.join(document)).collect();
-    match paths.iter().find(|path| !path.is_file()) {
-        Some(missing) => Err(format!("--docs: no file {}", missing.display())),
-        None => Ok(paths),
+/// Whether this is the repository, and a run on `files` can fill in all of its tables.
+pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> Result<(), String> {
+    let documents = documents(repository)?;
+    if options.quick || !options.only.is_empty() {
+        return Err("--docs takes a whole run: no --quick and no --only".to_owned());
     }
+    let meshes: Vec<String> = files.iter().map(|path| name(path)).collect();
+    for (path, text) in &documents {
+        let is_filled = |mark: &str| {
+            let is_of = |mesh: &String| {
+                mark.strip_prefix(&mesh[..]).is_some_and(|table| table.starts_with('-'))
+            };
+            !mark.contains('-') || meshes.iter().any(is_of)
+        };
+        if let Some(mark) = marks(text).find(|mark| !is_filled(mark)) {
+            return Err(format!(
+                "--docs: no mesh is given for the mark {mark:?} of {}",
+                path.display()
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Writes the summary, and the marked tables.
@@ -22,11 +37,20 @@ pub(crate) fn update(repository: &Path, report: Report) -> Result<(), String> {
     let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
     let blocks = blocks(&report);
     let mut written = vec![(repository.join(SUMMARY), json + "\n")];
-    for path in find(repository)? {
-        let fail = |error: String| format!("{}: {error}", path.display());
-        let text = fs::read_to_string(&path).map_err(|error| fail(error.to_string()))?;
-        let text = replace_blocks(&text, &blocks).map_err(fail)?;
+    for (path, text) in documents(repository)? {
+        let text =
+            replace_blocks(&text, &blocks).map_err(|why| format!("{}: {why}", path.display()))?;
         written.push((path, text));
     }
     written.iter().try_for_each(|(path, text)| write(path, text))
+}
+
+fn documents(repository: &Path) -> Result<Vec<(PathBuf, String)>, String> {
+    let read = |document: &&str| {
+        let path = repository.join(document);
+        let text = fs::read_to_string(&path);
+        let text = text.map_err(|error| format!("--docs: {}: {error}", path.display()))?;
+        Ok((path, text))
+    };
+    DOCUMENTS.iter().map(read).collect()
 }

@@ -1,5 +1,6 @@
 //! What was measured already, so that a run that is cut off goes on where it was.
 
+use std::cell::Cell;
 use std::fs;
 use std::path::PathBuf;
 
@@ -16,6 +17,8 @@ pub(crate) struct Kept {
     program: String,
     is_fresh: bool,
     progress: ProgressBar,
+    /// How many measurements are of an earlier run.
+    reused: Cell<u32>,
 }
 
 /// What was measured, and of what by which program: anything else is measured anew.
@@ -36,7 +39,19 @@ impl Kept {
         progress.set_style(style.map_err(|error| error.to_string())?);
         progress.enable_steady_tick(std::time::Duration::from_millis(200));
         let program = machine::program()?;
-        Ok(Self { folder, program, is_fresh: options.fresh, progress })
+        Ok(Self { folder, program, is_fresh: options.fresh, progress, reused: Cell::new(0) })
+    }
+
+    /// Ends the progress, and says what was not measured now.
+    pub(crate) fn finish(&self) {
+        self.progress.finish_and_clear();
+        if self.reused.get() > 0 {
+            eprintln!(
+                "{} measurements are of an earlier run, kept in {}; --fresh measures them anew",
+                self.reused.get(),
+                self.folder.display()
+            );
+        }
     }
 
     /// What is kept under `name` for the same `key`; else what `measure` gives, which is then kept.
@@ -47,13 +62,19 @@ impl Kept {
         measure: impl FnOnce() -> Result<T, String>,
     ) -> Result<T, String> {
         self.progress.set_message(name.to_owned());
+        if self.progress.is_hidden() {
+            eprintln!("{name}");
+        }
         let key = format!("{} {key}", self.program);
         let path = self.folder.join(format!("{}.json", file_name(name)));
         // A file that cannot be read is as good as none.
         let known = fs::read_to_string(&path).ok();
         let known = known.and_then(|text| serde_json::from_str::<Measured<T>>(&text).ok());
         let value = match known.filter(|known| known.key == key && !self.is_fresh) {
-            Some(known) => known.value,
+            Some(known) => {
+                self.reused.set(self.reused.get() + 1);
+                known.value
+            }
             None => {
                 let measured = Measured { key, value: measure()? };
                 let text = serde_json::to_string(&measured).map_err(|error| error.to_string())?;

@@ -45,11 +45,13 @@ pub(crate) fn run(options: &Options) -> Run {
     }
 }
 
-/// What must be the same for measurements to belong together: all of this program's bytes.
+/// What must be the same for measurements to belong together: all of this program's bytes, and where it
+/// runs.
 pub(crate) fn program() -> Result<String, String> {
     let bytes = std::env::current_exe().and_then(std::fs::read);
     let bytes = bytes.map_err(|error| format!("cannot read this program: {error}"))?;
-    Ok(format!("{:016x}", xxh3_64(&bytes)))
+    let Machine { processor, threads, instructions, .. } = machine();
+    Ok(format!("{:016x} {processor} {threads} {instructions}", xxh3_64(&bytes)))
 }
 
 /// Of the repository that it was built in, if `cargo xtask bench` built it.

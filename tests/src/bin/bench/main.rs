@@ -44,14 +44,14 @@ struct Options {
     #[arg(long)]
     fresh: bool,
     /// Also write what was measured to docs/measurements.json of this repository, and into the
-    /// marked tables of its documents
+    /// marked tables of its documents, all of whose meshes must be given
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
     /// Measure nothing: make the page and the tables from a report.json, or from the repository's
     /// docs/measurements.json, which has no plots
     #[arg(long, value_name = "REPORT", conflicts_with_all = ["quick", "rounds", "only", "fresh", "files"])]
     from: Option<PathBuf>,
-    /// Mesh files
+    /// Mesh files; those that are not found here are looked for in the folder of DRYPOINT_MODELS
     #[arg(value_name = "MESH FILE")]
     files: Vec<PathBuf>,
 }
@@ -98,19 +98,19 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), String> {
-    if let Some(repository) = &options.docs {
-        documents::find(repository)?;
-    }
     if let Some(path) = &options.from {
         return finish(options, &read(path)?);
     }
     let files = files(options)?;
+    if let Some(repository) = &options.docs {
+        // Now, and not after all has been measured.
+        documents::check(repository, options, &files)?;
+    }
     let kept = Kept::new(options)?;
     let mut meshes = Vec::new();
     for path in &files {
         let model = io::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        meshes.push(measure::mesh(&name, &model.mesh, options, &kept)?);
+        meshes.push(measure::mesh(&name(path), &model.mesh, options, &kept)?);
     }
     if files.is_empty() {
         for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
@@ -118,6 +118,7 @@ fn run(options: &Options) -> Result<(), String> {
             meshes.push(measure::mesh(name, &mesh, options, &kept)?);
         }
     }
+    kept.finish();
     finish(options, &Report { machine: machine::machine(), run: machine::run(options), meshes })
 }
 
@@ -129,34 +130,50 @@ fn read(path: &Path) -> Result<Report, String> {
 
 /// Mesh files to measure; none for the built-in shapes.
 fn files(options: &Options) -> Result<Vec<PathBuf>, String> {
-    if !options.files.is_empty() {
-        return Ok(options.files.clone());
-    }
-    let mut files = models::files()?;
-    let is_quick = |path: &PathBuf| {
-        path.file_stem().is_some_and(|stem| QUICK_MODELS.iter().any(|name| stem == *name))
+    let files = if options.files.is_empty() {
+        let mut files = models::files()?;
+        files.retain(|path| !options.quick || QUICK_MODELS.contains(&&*name(path)));
+        if options.quick && files.is_empty() {
+            eprintln!("bench: neither of {} is there: built-in shapes", QUICK_MODELS.join(" and "));
+        }
+        files
+    } else {
+        let folder = std::env::var_os(models::VARIABLE).map(PathBuf::from).unwrap_or_default();
+        let find = |file: &PathBuf| {
+            let model = folder.join(file);
+            if !file.exists() && model.is_file() { model } else { file.clone() }
+        };
+        options.files.iter().map(find).collect()
     };
-    if options.quick {
-        files.retain(is_quick);
+    let mut names: Vec<String> = files.iter().map(|path| name(path)).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(format!("two meshes have the name {}", pair[0])),
+        None => Ok(files),
     }
-    Ok(files)
 }
 
-/// Writes the report, whole or not at all.
+/// Of a mesh in the report.
+fn name(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Writes the report, each file whole or not at all.
 fn finish(options: &Options, report: &Report) -> Result<(), String> {
     let fail = |error: std::io::Error| format!("{}: {error}", options.output.display());
     fs::create_dir_all(&options.output).map_err(fail)?;
+    let html = page(report)?;
     let json = serde_json::to_string(report).map_err(|error| error.to_string())?;
     write(&options.output.join("report.json"), &json)?;
-    let html = options.output.join("report.html");
-    write(&html, &page(report)?)?;
+    let path = options.output.join("report.html");
+    write(&path, &html)?;
     if let Some(repository) = &options.docs {
         documents::update(repository, report.clone())?;
     }
     for (name, block) in blocks(report) {
         println!("{name}\n\n{block}");
     }
-    println!("{}", html.display());
+    println!("{}", path.display());
     Ok(())
 }
 

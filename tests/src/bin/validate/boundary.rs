@@ -29,6 +29,9 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     );
     let mut total = Total::default();
     meshes::for_each(&options.only, |name, mesh| validate(name, mesh, options, &mut total))?;
+    if total.sets == 0 {
+        return Err(format!("no preset has {:?} in its name", options.preset));
+    }
     println!(
         "no contour edge is lost: {} patch sets, {} viewpoints on cull boundaries, {} of them culled, \
          {} viewpoints near a mesh or around it",

@@ -59,12 +59,16 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     let result =
         meshes::for_each(&options.only, |name, mesh| validate(name, mesh, options, &mut outcome));
     outcome.disagreement = result.as_ref().err().cloned();
-    if let Some(path) = &options.json {
-        let fail = |error: String| format!("{}: {error}", path.display());
-        let json = serde_json::to_string_pretty(&outcome).map_err(|e| fail(e.to_string()))?;
-        fs::write(path, json + "\n").map_err(|error| fail(error.to_string()))?;
+    let written = options.json.as_ref().map_or(Ok(()), |path| {
+        let json = serde_json::to_string_pretty(&outcome).map_err(std::io::Error::from);
+        let written = json.and_then(|json| fs::write(path, json + "\n"));
+        written.map_err(|error| format!("{}: {error}", path.display()))
+    });
+    // That something is wrong comes before that it could not be written.
+    result.and(written)?;
+    if outcome.agreements.is_empty() {
+        return Err(format!("no preset or baseline has {:?} in its name", options.preset));
     }
-    result?;
     let mut meshes: Vec<&str> = outcome.agreements.iter().map(|row| row.mesh.as_str()).collect();
     meshes.dedup();
     println!(
