@@ -1,0 +1,333 @@
+//! What is found of one model, and the memory that it takes.
+
+use drypoint_shaders::{Arguments, Counters, Segment, Totals, Transform, Work};
+use glam::Vec4;
+use wgpu::BufferUsages;
+
+use crate::Error;
+use crate::device::{buffer, checked};
+use crate::extractor::Extractor;
+use crate::model::Model;
+use crate::placement::Placement;
+use crate::plan::{Dispatch, Method, Plan, PlanLimits};
+use crate::readback::Readback;
+use crate::staging::Staging;
+use crate::statistics::Statistics;
+
+/// What there is room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Capacity {
+    /// Placements in a frame: instances times parts of the model. 64 bytes each.
+    pub placements: u32,
+    /// Segments in a frame, all instances together. 16 bytes each.
+    pub segments: u32,
+}
+
+/// The contour edges of instances of one model, on the GPU, and all that finding them needs.
+///
+/// To be prepared and recorded once for each submission: a second time overwrites the first.
+#[derive(Debug)]
+pub struct Contours {
+    model: Model,
+    capacity: Capacity,
+    limits: PlanLimits,
+    device: wgpu::Device,
+    input: wgpu::Buffer,
+    layout: InputLayout,
+    counters: wgpu::Buffer,
+    totals: wgpu::Buffer,
+    arguments: wgpu::Buffer,
+    segments: wgpu::Buffer,
+    pub(crate) work_bindings: wgpu::BindGroup,
+    pub(crate) tally_bindings: wgpu::BindGroup,
+    pub(crate) dispatches: Vec<Dispatch>,
+    /// The input of a frame as it is being written.
+    viewpoints: Vec<Vec4>,
+    transforms: Vec<Transform>,
+    work: Vec<u8>,
+    staging: Staging,
+    readback: Readback,
+}
+
+/// Where each kind of input lies in its buffer.
+#[derive(Clone, Copy, Debug)]
+struct InputLayout {
+    transforms: u64,
+    work: u64,
+    /// From one dispatch's work to the next.
+    stride: usize,
+    size: u64,
+}
+
+impl InputLayout {
+    fn new(limits: &wgpu::Limits, placements: u32, dispatches: usize) -> Self {
+        let align = |size: u64, to: u32| size.next_multiple_of(u64::from(to.max(16)));
+        let storage = limits.min_storage_buffer_offset_alignment;
+        let uniform = limits.min_uniform_buffer_offset_alignment;
+        let placements = u64::from(placements.max(1));
+        let transforms = align(placements * size_of::<Vec4>() as u64, storage);
+        let work = transforms + placements * size_of::<Transform>() as u64;
+        let work = align(work, uniform);
+        let stride = size_of::<Work>().next_multiple_of(uniform.max(16) as usize);
+        Self { transforms, work, stride, size: work + (stride * dispatches.max(1)) as u64 }
+    }
+}
+
+impl Contours {
+    /// Room for the contours of `model`.
+    ///
+    /// # Errors
+    /// If the GPU has not enough memory, or `capacity` is beyond what the device allows in one buffer.
+    pub fn new(extractor: &Extractor, model: &Model, capacity: Capacity) -> Result<Self, Error> {
+        let device = extractor.device();
+        let limits = extractor.plan_limits();
+        let dispatches = most_dispatches(model, capacity, limits);
+        let layout = InputLayout::new(&device.limits(), capacity.placements, dispatches);
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let read = usage | BufferUsages::COPY_SRC;
+        let make = |what, size: usize, usage| buffer(device, what, size as u64, usage);
+        let input =
+            buffer(device, "the input of a frame", layout.size, usage | BufferUsages::UNIFORM)?;
+        let counters = make("counters", size_of::<Counters>(), read)?;
+        let totals = make("totals", size_of::<Totals>(), read)?;
+        let arguments = make("arguments", size_of::<Arguments>(), read | BufferUsages::INDIRECT)?;
+        let size = u64::from(capacity.segments) * size_of::<Segment>() as u64;
+        let segments = buffer(device, "segments", size, read | BufferUsages::VERTEX)?;
+        let part = |offset, size| {
+            let size = wgpu::BufferSize::new(size);
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &input, offset, size })
+        };
+        let work = || part(layout.work, size_of::<Work>() as u64);
+        let viewpoints = part(0, u64::from(capacity.placements.max(1)) * size_of::<Vec4>() as u64);
+        let bind = |what,
+                    layout: &wgpu::BindGroupLayout,
+                    resources: Vec<(u32, wgpu::BindingResource<'_>)>| {
+            let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+            let entries: Vec<_> = resources.into_iter().map(entry).collect();
+            let descriptor =
+                wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
+            checked(device, what, || device.create_bind_group(&descriptor))
+        };
+        let [counted, added, arguing, found] =
+            [&counters, &totals, &arguments, &segments].map(wgpu::Buffer::as_entire_binding);
+        Ok(Self {
+            work_bindings: bind(
+                "the bindings of extraction",
+                extractor.work_layout(),
+                vec![(0, work()), (1, viewpoints), (2, counted.clone()), (3, found)],
+            )?,
+            tally_bindings: bind(
+                "the bindings of totals",
+                extractor.tally_layout(),
+                vec![(0, work()), (2, counted), (4, added), (5, arguing)],
+            )?,
+            model: model.clone(),
+            capacity,
+            limits,
+            device: device.clone(),
+            layout,
+            counters,
+            totals,
+            arguments,
+            segments,
+            dispatches: Vec::with_capacity(dispatches),
+            viewpoints: Vec::with_capacity(capacity.placements as usize),
+            transforms: Vec::with_capacity(capacity.placements as usize),
+            work: Vec::with_capacity(layout.stride * dispatches),
+            staging: Staging::new(device, layout.size)?,
+            readback: Readback::new(device, "statistics", size_of::<Totals>() as u64)?,
+            input,
+        })
+    }
+
+    /// Takes what the next [`Extractor::record`] is to find: part p of instance i is at
+    /// `i * part_count + p` of `placements`. Records copies of it into `encoder`, which must be submitted
+    /// before or together with the pass that it is for.
+    ///
+    /// Linear in placements, some 50 ns each, and allocates nothing once as many frames are under way as
+    /// there ever are.
+    ///
+    /// # Errors
+    /// If there are more placements than there is room for or not one for each part, if one has no inverse,
+    /// if patches are asked for where there are none, or if the device is lost. Nothing is recorded then.
+    pub fn prepare(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        placements: &[Placement],
+        method: Method,
+    ) -> Result<(), Error> {
+        self.check(placements, method)?;
+        self.viewpoints.clear();
+        self.transforms.clear();
+        let frames = &self.model.content.frames;
+        for (index, placement) in placements.iter().enumerate() {
+            let frame = &frames[index % frames.len()];
+            let viewpoint =
+                placement.viewpoint_in(frame).ok_or(Error::SingularPlacement { index })?;
+            self.viewpoints.push(viewpoint);
+            self.transforms.push(Transform::from(placement.to_scene));
+        }
+        self.dispatches.clear();
+        #[expect(clippy::cast_possible_truncation, reason = "no more than the capacity, a u32")]
+        let instances = (placements.len() / frames.len()) as u32;
+        plan(&self.model, method, instances, self.capacity, self.limits)
+            .dispatches(&mut self.dispatches);
+        self.work.clear();
+        for dispatch in &self.dispatches {
+            self.work.extend_from_slice(bytemuck::bytes_of(&dispatch.work));
+            self.work.resize(self.work.len().next_multiple_of(self.layout.stride), 0);
+        }
+        let pieces: [(u64, &[u8]); 3] = [
+            (0, bytemuck::cast_slice(&self.viewpoints)),
+            (self.layout.transforms, bytemuck::cast_slice(&self.transforms)),
+            (self.layout.work, &self.work),
+        ];
+        self.staging.write(&self.device, encoder, &self.input, &pieces)?;
+        for counted in [&self.counters, &self.totals, &self.arguments] {
+            encoder.clear_buffer(counted, 0, None);
+        }
+        Ok(())
+    }
+
+    fn check(&self, placements: &[Placement], method: Method) -> Result<(), Error> {
+        let parts = self.model.part_count();
+        if method == Method::Patches && !self.model.has_patches() && self.model.edge_count() > 0 {
+            return Err(Error::NoPatches);
+        }
+        if placements.len() > self.capacity.placements as usize {
+            let capacity = self.capacity.placements;
+            return Err(Error::TooManyPlacements { given: placements.len(), capacity });
+        }
+        if !placements.len().is_multiple_of(parts as usize) {
+            return Err(Error::UnevenPlacements { given: placements.len(), parts });
+        }
+        Ok(())
+    }
+
+    /// The model that is looked at.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// What there is room for.
+    pub fn capacity(&self) -> Capacity {
+        self.capacity
+    }
+
+    /// [`Segment`]s, in any order; as many as the arguments say. Storage and vertex buffer.
+    pub fn segments(&self) -> &wgpu::Buffer {
+        &self.segments
+    }
+
+    /// [`Arguments`], to draw or to dispatch with. Indirect and storage buffer.
+    pub fn arguments(&self) -> &wgpu::Buffer {
+        &self.arguments
+    }
+
+    /// A [`Transform`](drypoint_shaders::Transform) for each placement, to bind as storage.
+    pub fn transforms(&self) -> wgpu::BufferBinding<'_> {
+        let size = u64::from(self.capacity.placements.max(1)) * size_of::<Transform>() as u64;
+        let size = wgpu::BufferSize::new(size);
+        wgpu::BufferBinding { buffer: &self.input, offset: self.layout.transforms, size }
+    }
+
+    /// Asks for the statistics of what `encoder` holds by now: to be called after the pass has ended.
+    pub fn request_statistics(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.readback.request(encoder, &self.totals);
+    }
+
+    /// The newest statistics that have come since the last call, some frames after they were asked for.
+    /// They come when the device is polled, which submitting does too.
+    pub fn newest_statistics(&mut self) -> Option<Statistics> {
+        let capacity = self.capacity.segments;
+        self.readback.newest(|bytes| Statistics::new(&totals_of(bytes), capacity))
+    }
+
+    /// Waits for the GPU and reads the statistics of what was submitted last.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn read_statistics(&self, queue: &wgpu::Queue) -> Result<Statistics, Error> {
+        let size = size_of::<Totals>() as u64;
+        let bytes = read(&self.device, queue, &self.totals, size)?;
+        Ok(Statistics::new(&totals_of(&bytes), self.capacity.segments))
+    }
+
+    /// Waits for the GPU and reads all segments of what was submitted last, in any order.
+    ///
+    /// # Errors
+    /// [`Error::Overflow`] if not all fit, or if the device is lost.
+    pub fn read_segments(&self, queue: &wgpu::Queue) -> Result<Vec<Segment>, Error> {
+        let statistics = self.read_statistics(queue)?;
+        if let Some(needed) = statistics.overflow() {
+            return Err(Error::Overflow { needed, capacity: self.capacity.segments });
+        }
+        let size = statistics.segments * size_of::<Segment>() as u64;
+        let bytes = read(&self.device, queue, &self.segments, size)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    pub(crate) fn work_offset(&self, dispatch: usize) -> u32 {
+        #[expect(clippy::cast_possible_truncation, reason = "offsets in a binding are below 2^32")]
+        let offset = (dispatch * self.layout.stride) as u32;
+        offset
+    }
+}
+
+fn plan(
+    model: &Model,
+    method: Method,
+    instances: u32,
+    capacity: Capacity,
+    limits: PlanLimits,
+) -> Plan<'_> {
+    Plan { model: &model.content, method, instances, segment_capacity: capacity.segments, limits }
+}
+
+fn most_dispatches(model: &Model, capacity: Capacity, limits: PlanLimits) -> usize {
+    let instances = capacity.placements / model.part_count().max(1);
+    let methods = [Method::BruteForce, Method::Patches].into_iter();
+    let count = |method| plan(model, method, instances, capacity, limits).most_dispatches();
+    methods.map(count).max().unwrap_or(0)
+}
+
+fn totals_of(bytes: &[u8]) -> Totals {
+    bytemuck::pod_read_unaligned(&bytes[..size_of::<Totals>()])
+}
+
+/// Waits for the GPU and reads the first bytes of a buffer.
+pub(crate) fn read(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    source: &wgpu::Buffer,
+    size: u64,
+) -> Result<Vec<u8>, Error> {
+    if size == 0 {
+        return Ok(Vec::new());
+    }
+    let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+    let descriptor = wgpu::BufferDescriptor {
+        label: Some("what is read back"),
+        size,
+        usage,
+        mapped_at_creation: false,
+    };
+    let copy = checked(device, "what is read back", || device.create_buffer(&descriptor))?;
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(source, 0, &copy, 0, size);
+    queue.submit([encoder.finish()]);
+    let (sender, receiver) = std::sync::mpsc::channel();
+    copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        // Nobody listens any more if polling failed.
+        let _ = sender.send(result);
+    });
+    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Error::DeviceLost)?;
+    let mapped = receiver.try_recv().map_err(|_| Error::DeviceLost)?;
+    mapped.map_err(|_| Error::DeviceLost)?;
+    let view = copy.slice(..).get_mapped_range().map_err(|_| Error::DeviceLost)?;
+    Ok(view.to_vec())
+}

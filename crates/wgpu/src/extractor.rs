@@ -1,0 +1,232 @@
+//! Pipelines, and how a frame's work is recorded with them.
+
+use drypoint_shaders::{
+    BRUTE_FORCE, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY, WIDTHS, Work, prelude,
+};
+
+use crate::Error;
+use crate::contours::Contours;
+use crate::device::checked;
+use crate::plan::{PlanLimits, Stage};
+
+/// How shaders are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExtractorOptions {
+    /// Lanes in a workgroup, a power of two from 32 to 256. What the device allows is the most it gets.
+    pub width: u32,
+    /// Subgroup operations where the device has them.
+    pub subgroups: bool,
+}
+
+impl Default for ExtractorOptions {
+    fn default() -> Self {
+        Self { width: 64, subgroups: true }
+    }
+}
+
+/// Finds contour edges: the pipelines of one device, to be made once.
+#[derive(Debug)]
+pub struct Extractor {
+    device: wgpu::Device,
+    limits: PlanLimits,
+    model_layout: wgpu::BindGroupLayout,
+    work_layout: wgpu::BindGroupLayout,
+    tally_layout: wgpu::BindGroupLayout,
+    placing_layout: wgpu::BindGroupLayout,
+    brute_force: wgpu::ComputePipeline,
+    patches: wgpu::ComputePipeline,
+    super_patches: wgpu::ComputePipeline,
+    tally: wgpu::ComputePipeline,
+    placing: wgpu::ComputePipeline,
+}
+
+impl Extractor {
+    /// Compiles the shaders, with [`ExtractorOptions::default`]. Milliseconds, or seconds on some drivers.
+    ///
+    /// # Errors
+    /// If the device has not what plain WebGPU has, or the driver refuses a shader.
+    pub fn new(device: &wgpu::Device) -> Result<Self, Error> {
+        Self::with_options(device, &ExtractorOptions::default())
+    }
+
+    /// The same with options of one's own.
+    ///
+    /// # Errors
+    /// As [`Extractor::new`].
+    pub fn with_options(device: &wgpu::Device, options: &ExtractorOptions) -> Result<Self, Error> {
+        let given = device.limits();
+        if given.max_storage_buffers_per_shader_stage < 7 {
+            let feature = "seven storage buffers in a shader";
+            return Err(Error::MissingFeature { feature, what: "extraction" });
+        }
+        let most =
+            given.max_compute_invocations_per_workgroup.min(given.max_compute_workgroup_size_x);
+        let fits = |width: &u32| *width <= most.min(options.width.max(WIDTHS[0]));
+        let Some(width) = WIDTHS.into_iter().rev().find(fits) else {
+            let feature = "workgroups of 32 lanes";
+            return Err(Error::MissingFeature { feature, what: "extraction" });
+        };
+        checked(device, "the shaders of extraction", || Self::build(device, options, width))
+    }
+
+    fn build(device: &wgpu::Device, options: &ExtractorOptions, width: u32) -> Self {
+        let has_subgroups = device.features().contains(wgpu::Features::SUBGROUP);
+        let subgroups =
+            if options.subgroups && has_subgroups { Subgroups::With } else { Subgroups::Without };
+        let model_layout = layout(device, &[READ; 4]);
+        let work_layout = layout(device, &[WORK, READ, WRITE, WRITE]);
+        let tally_layout = numbered(device, &[(0, WORK), (2, WRITE), (4, WRITE), (5, WRITE)]);
+        let placing_layout = layout(device, &[READ, READ, READ, READ, WRITE]);
+        let maker = Maker { device };
+        let of_extraction = [Some(&model_layout), Some(&work_layout)];
+        let extraction = |sources: [&str; 2], entry: &str| {
+            let source = prelude(width) + sources[subgroups as usize];
+            maker.pipeline(&of_extraction, &source, entry)
+        };
+        let limits = PlanLimits {
+            width,
+            row: device.limits().max_compute_workgroups_per_dimension,
+            edges: 1 << 31,
+        };
+        Self {
+            limits,
+            brute_force: extraction(BRUTE_FORCE, "brute_force"),
+            patches: extraction(PATCHES, "patches_and_edges"),
+            super_patches: extraction(SUPER_PATCHES, "super_patches_to_edges"),
+            tally: maker.pipeline(&[None, Some(&tally_layout)], TALLY, "tally"),
+            placing: maker.pipeline(&[Some(&placing_layout)], POSITIONS, "place_segments"),
+            device: device.clone(),
+            model_layout,
+            work_layout,
+            tally_layout,
+            placing_layout,
+        }
+    }
+
+    /// Records what `contours` was prepared for. Any number of them may share a pass, which may be timed
+    /// ([`Timer`](crate::Timer)). The pass must come after [`Contours::prepare`] in the order of submission.
+    ///
+    /// Some microseconds on the CPU, unless the work has to be split.
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, contours: &Contours) {
+        for (index, dispatch) in contours.dispatches.iter().enumerate() {
+            let pipeline = match dispatch.stage {
+                Stage::Edges => &self.brute_force,
+                Stage::Patches => &self.patches,
+                Stage::SuperPatches => &self.super_patches,
+            };
+            let offset = contours.work_offset(index);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &contours.model().content.pages[dispatch.page].bindings, &[]);
+            pass.set_bind_group(1, &contours.work_bindings, &[offset]);
+            pass.dispatch_workgroups(dispatch.grid[0], dispatch.grid[1], 1);
+            pass.set_pipeline(&self.tally);
+            pass.set_bind_group(1, &contours.tally_bindings, &[offset]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+    }
+
+    /// The device it was made for.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// Lanes in a workgroup.
+    pub fn width(&self) -> u32 {
+        self.limits.width
+    }
+
+    pub(crate) fn plan_limits(&self) -> PlanLimits {
+        self.limits
+    }
+
+    pub(crate) fn model_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.model_layout
+    }
+
+    pub(crate) fn work_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.work_layout
+    }
+
+    pub(crate) fn tally_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.tally_layout
+    }
+
+    pub(crate) fn placing_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.placing_layout
+    }
+
+    pub(crate) fn placing(&self) -> &wgpu::ComputePipeline {
+        &self.placing
+    }
+}
+
+struct Maker<'a> {
+    device: &'a wgpu::Device,
+}
+
+impl Maker<'_> {
+    fn pipeline(
+        &self,
+        layouts: &[Option<&wgpu::BindGroupLayout>],
+        source: &str,
+        entry: &str,
+    ) -> wgpu::ComputePipeline {
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(entry),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(entry),
+            bind_group_layouts: layouts,
+            immediate_size: 0,
+        });
+        // Shaders begin by writing what they read in workgroup memory.
+        let compilation_options = wgpu::PipelineCompilationOptions {
+            zero_initialize_workgroup_memory: false,
+            ..Default::default()
+        };
+        self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options,
+            cache: None,
+        })
+    }
+}
+
+const READ: wgpu::BindingType = storage(true);
+const WRITE: wgpu::BindingType = storage(false);
+const WORK: wgpu::BindingType = wgpu::BindingType::Buffer {
+    ty: wgpu::BufferBindingType::Uniform,
+    has_dynamic_offset: true,
+    min_binding_size: wgpu::BufferSize::new(size_of::<Work>() as u64),
+};
+
+const fn storage(read_only: bool) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+fn layout(device: &wgpu::Device, types: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
+    let types: Vec<_> = (0..).zip(types.iter().copied()).collect();
+    numbered(device, &types)
+}
+
+fn numbered(device: &wgpu::Device, types: &[(u32, wgpu::BindingType)]) -> wgpu::BindGroupLayout {
+    let entry = |&(binding, ty): &(u32, wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    let entries: Vec<_> = types.iter().map(entry).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("drypoint"),
+        entries: &entries,
+    })
+}

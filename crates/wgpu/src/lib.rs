@@ -1,0 +1,77 @@
+//! Contour edges of many instances of meshes, found on a GPU each frame, with [`wgpu`].
+//!
+//! A [`Model`] is uploaded once. Each frame, [`Contours::prepare`] takes the placement of each instance and
+//! [`Extractor::record`] records into a compute pass of the caller's: every patch is tested from every
+//! instance's viewpoint, and the edges of those that may hold a contour edge. What comes out stays on the
+//! GPU: [`Segment`]s, and indirect arguments that draw them.
+//!
+//! - **Complete.** The edges of the exact definition, [`drypoint_mesh::contour_edges`], but for those with a
+//!   face so close to edge-on that f32 cannot tell its side; the margin is stated
+//!   ([`EdgePlanes::doubt`](drypoint_shaders::EdgePlanes::doubt)), and contours of closed meshes close all the same.
+//! - **No surprises.** Nothing waits for the GPU but calls that say so. Buffers are made with [`Model`] and
+//!   [`Contours`], at sizes that the caller chose. What does not fit is counted and reported
+//!   ([`Statistics::overflow`]), and never written. Whatever exceeds a dispatch or a binding is split.
+//! - **No panics.** No adapter, no memory, a lost device: an [`Error`].
+//!
+//! | | for |
+//! |---|---|
+//! | [`Gpu`] | a device, for programs without one |
+//! | [`Extractor`] | pipelines; one for each device |
+//! | [`Model`] | a mesh and its patches, or a rigged one's rigid parts |
+//! | [`Contours`] | what is found of one model in a frame |
+//! | [`PlacedContours`] | the same as positions in the scene |
+//! | [`Timer`] | GPU time of a pass, a few frames later |
+//!
+//! Order is free: the same view gives the same set of segments, in any order.
+//!
+//! ```no_run
+//! use drypoint_fusion::{FusionParams, fuse};
+//! use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
+//! use drypoint_wgpu::{Capacity, Contours, Extractor, Gpu, Method, Model, Placement};
+//! use std::ops::ControlFlow;
+//!
+//! # fn main() -> Result<(), drypoint_wgpu::Error> {
+//! let mesh = shapes::torus_knot(20_000);
+//! let adjacency = MeshAdjacency::new(&mesh);
+//! let go_on = |_| ControlFlow::Continue(());
+//! let patches = fuse(&mesh, &adjacency, EdgeFilter::Convex, &FusionParams::FAST, &go_on).unwrap();
+//!
+//! let gpu = Gpu::request()?;
+//! let extractor = Extractor::new(&gpu.device)?;
+//! let model = Model::new(&extractor, &[&patches])?;
+//! let mut contours = Contours::new(&extractor, &model, Capacity { placements: 1, segments: 10_000 })?;
+//!
+//! let viewpoint = Viewpoint::at(glam::DVec3::new(0.0, 2.0, 9.0));
+//! let mut encoder = gpu.device.create_command_encoder(&Default::default());
+//! contours.prepare(&mut encoder, &[Placement::at_origin(viewpoint)], Method::Patches)?;
+//! extractor.record(&mut encoder.begin_compute_pass(&Default::default()), &contours);
+//! gpu.queue.submit([encoder.finish()]);
+//! println!("{} contour edges", contours.read_segments(&gpu.queue)?.len());
+//! # Ok(())
+//! # }
+//! ```
+
+mod contours;
+mod device;
+mod error;
+mod extractor;
+mod model;
+mod placed;
+mod placement;
+mod plan;
+mod readback;
+mod staging;
+mod statistics;
+mod timer;
+
+pub use contours::{Capacity, Contours};
+pub use device::{Gpu, WANTED_FEATURES};
+pub use drypoint_shaders::{Arguments, PlacedSegment, Segment};
+pub use error::Error;
+pub use extractor::{Extractor, ExtractorOptions};
+pub use model::Model;
+pub use placed::PlacedContours;
+pub use placement::Placement;
+pub use plan::Method;
+pub use statistics::Statistics;
+pub use timer::Timer;

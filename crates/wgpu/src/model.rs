@@ -1,0 +1,135 @@
+//! What is uploaded once.
+
+use std::sync::Arc;
+
+use drypoint_fusion::PatchSet;
+use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
+use drypoint_shaders::{Content, EdgeEnds, EdgePlanes, Frame, Group, MAX_PIECE, Page};
+use wgpu::BufferUsages;
+
+use crate::Error;
+use crate::device::{checked, filled, largest_storage};
+use crate::extractor::Extractor;
+
+/// Edges, planes and patches of a model in GPU memory: 44 bytes an edge, 12 a vertex and 48 a patch.
+///
+/// A model of several rigid parts has a patch set for each, and is placed part by part. A clone is the same
+/// model; memory is freed with the last.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) content: Arc<Uploaded>,
+}
+
+/// What a [`Model`] consists of.
+#[derive(Debug)]
+pub(crate) struct Uploaded {
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) pages: Vec<UploadedPage>,
+    pub(crate) positions: wgpu::Buffer,
+    pub(crate) edge_count: u64,
+    pub(crate) has_patches: bool,
+}
+
+/// A [`Page`] of the model, which fits the device's bindings.
+#[derive(Debug)]
+pub(crate) struct UploadedPage {
+    pub(crate) page: Page,
+    pub(crate) bindings: wgpu::BindGroup,
+}
+
+impl Model {
+    /// Uploads a patch set for each rigid part. Waits for no GPU work; takes about as long as reading the
+    /// patch sets, with exact predicates and a normal for each edge.
+    ///
+    /// # Errors
+    /// If the GPU has not enough memory, or a part's vertices do not fit one binding.
+    pub fn new(extractor: &Extractor, parts: &[&PatchSet]) -> Result<Self, Error> {
+        Self::upload(extractor, &Content::new(parts))
+    }
+
+    /// Uploads a mesh without patches, for brute force alone.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn without_patches(
+        extractor: &Extractor,
+        mesh: &Mesh,
+        adjacency: &MeshAdjacency,
+        filter: EdgeFilter,
+    ) -> Result<Self, Error> {
+        Self::upload(extractor, &Content::without_patches(mesh, adjacency, filter))
+    }
+
+    fn upload(extractor: &Extractor, content: &Content) -> Result<Self, Error> {
+        let device = extractor.device();
+        let positions: &[f32] = bytemuck::cast_slice(&content.positions);
+        let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC;
+        let positions = filled(device, "the vertices of a model", positions, usage)?;
+        let limit = largest_storage(&device.limits());
+        let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
+        let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
+        let pages = content.pages(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
+        let upload = |page: Page| {
+            let bindings = bind(extractor, content, &page)?;
+            Ok(UploadedPage { page, bindings })
+        };
+        let pages = pages.into_iter().map(upload).collect::<Result<_, _>>()?;
+        Ok(Self {
+            content: Arc::new(Uploaded {
+                frames: content.frames.clone(),
+                pages,
+                positions,
+                edge_count: u64::from(content.edge_count()),
+                has_patches: !content.patches.is_empty(),
+            }),
+        })
+    }
+
+    /// Number of rigid parts, each of which needs a placement in each instance; at least 1.
+    pub fn part_count(&self) -> u32 {
+        u32::try_from(self.content.frames.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Number of edges of all parts.
+    pub fn edge_count(&self) -> u64 {
+        self.content.edge_count
+    }
+
+    /// Whether it was made from patch sets.
+    pub fn has_patches(&self) -> bool {
+        self.content.has_patches
+    }
+
+    /// Vertices of all parts in model units, three f32 each, in the order that segments count in.
+    pub fn positions(&self) -> &wgpu::Buffer {
+        &self.content.positions
+    }
+}
+
+fn bind(extractor: &Extractor, content: &Content, page: &Page) -> Result<wgpu::BindGroup, Error> {
+    let device = extractor.device();
+    let edges = page.edges.start as usize..page.edges.end as usize;
+    let usage = BufferUsages::STORAGE;
+    let planes: &[EdgePlanes] = &content.planes[edges.clone()];
+    let ends: &[EdgeEnds] = &content.ends[edges];
+    let buffers = [
+        filled(device, "the planes of a model", planes, usage)?,
+        filled(device, "the edges of a model", ends, usage)?,
+        filled(device, "the patches of a model", &at_least_one(&page.patches), usage)?,
+        filled(device, "the super-patches of a model", &at_least_one(&page.super_patches), usage)?,
+    ];
+    let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding);
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+    let descriptor = wgpu::BindGroupDescriptor {
+        label: Some("drypoint model"),
+        layout: extractor.model_layout(),
+        entries: &entries,
+    };
+    checked(device, "the bindings of a model", || device.create_bind_group(&descriptor))
+}
+
+/// A binding may not be smaller than an element.
+fn at_least_one(groups: &[Group]) -> Vec<Group> {
+    if groups.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { groups.to_vec() }
+}

@@ -1,0 +1,79 @@
+//! Segments as positions.
+
+use drypoint_shaders::{Arguments, PlacedSegment};
+
+use crate::Error;
+use crate::contours::{Contours, read};
+use crate::device::{buffer, checked};
+use crate::extractor::Extractor;
+
+/// The segments of [`Contours`] as positions in the scene, for callers that draw lines of their own.
+#[derive(Debug)]
+pub struct PlacedContours {
+    segments: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+}
+
+impl PlacedContours {
+    /// Room for all that `contours` has room for, 32 bytes each.
+    ///
+    /// # Errors
+    /// If the GPU has not enough memory, or so many do not fit one buffer.
+    pub fn new(extractor: &Extractor, contours: &Contours) -> Result<Self, Error> {
+        let device = extractor.device();
+        let usage =
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
+        let size = u64::from(contours.capacity().segments) * size_of::<PlacedSegment>() as u64;
+        let segments = buffer(device, "placed segments", size.max(32), usage)?;
+        let resources = [
+            contours.segments().as_entire_binding(),
+            contours.arguments().as_entire_binding(),
+            contours.model().positions().as_entire_binding(),
+            wgpu::BindingResource::Buffer(contours.transforms()),
+            segments.as_entire_binding(),
+        ];
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
+        let what = "the bindings of placed segments";
+        let layout = extractor.placing_layout();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
+        let bindings = checked(device, what, || device.create_bind_group(&descriptor))?;
+        Ok(Self { segments, bindings })
+    }
+
+    /// Records the placing, into the pass of [`Extractor::record`] after it, or a later one. `contours` must
+    /// be those that it was made for.
+    pub fn record(
+        &self,
+        extractor: &Extractor,
+        pass: &mut wgpu::ComputePass<'_>,
+        contours: &Contours,
+    ) {
+        pass.set_pipeline(extractor.placing());
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.dispatch_workgroups_indirect(contours.arguments(), Arguments::WORKGROUPS);
+    }
+
+    /// [`PlacedSegment`]s, in the order of the segments. Storage and vertex buffer.
+    pub fn segments(&self) -> &wgpu::Buffer {
+        &self.segments
+    }
+
+    /// Waits for the GPU and reads the placed segments of what was submitted last.
+    ///
+    /// # Errors
+    /// [`Error::Overflow`] if not all fit, or if the device is lost.
+    pub fn read(
+        &self,
+        queue: &wgpu::Queue,
+        contours: &Contours,
+    ) -> Result<Vec<PlacedSegment>, Error> {
+        let statistics = contours.read_statistics(queue)?;
+        if let Some(needed) = statistics.overflow() {
+            return Err(Error::Overflow { needed, capacity: statistics.capacity });
+        }
+        let size = statistics.segments * size_of::<PlacedSegment>() as u64;
+        let bytes = read(contours.device(), queue, &self.segments, size)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+}

@@ -1,0 +1,156 @@
+//! Cuts work into dispatches that a device allows.
+
+use drypoint_shaders::Work;
+
+use crate::model::Uploaded;
+
+/// How contour edges are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Every edge is tested.
+    BruteForce,
+    /// Patches are tested, super-patches before them where the model has any, and then the edges of those
+    /// that may hold a contour edge.
+    Patches,
+}
+
+/// What a dispatch begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Edges,
+    Patches,
+    SuperPatches,
+}
+
+/// One dispatch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dispatch {
+    pub(crate) stage: Stage,
+    /// The page of the model.
+    pub(crate) page: usize,
+    pub(crate) work: Work,
+    /// Workgroups along x and y.
+    pub(crate) grid: [u32; 2],
+}
+
+/// What bounds a dispatch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PlanLimits {
+    /// Lanes in a workgroup.
+    pub(crate) width: u32,
+    /// Workgroups along one dimension.
+    pub(crate) row: u32,
+    /// Edges of all instances, so that counters of 32 bits hold what one dispatch can find.
+    pub(crate) edges: u32,
+}
+
+/// Rounds of a workgroup's lanes in brute force: enough that starting it costs little.
+const ROUNDS: u32 = 8;
+
+/// Workgroups that a GPU should have before a workgroup gets more to do.
+const BUSY: u64 = 1024;
+
+/// Super-patches that are enough for a workgroup: they hold some ten patches each.
+const SUPER_PATCHES: u32 = 8;
+
+/// What is to be done for `instances` of a model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan<'a> {
+    pub(crate) model: &'a Uploaded,
+    pub(crate) method: Method,
+    pub(crate) instances: u32,
+    pub(crate) segment_capacity: u32,
+    pub(crate) limits: PlanLimits,
+}
+
+impl Plan<'_> {
+    /// Adds its dispatches to `dispatches`.
+    pub(crate) fn dispatches(&self, dispatches: &mut Vec<Dispatch>) {
+        for (index, uploaded) in self.model.pages.iter().enumerate() {
+            let page = &uploaded.page;
+            if self.method == Method::BruteForce {
+                for (part, edges) in &page.parts {
+                    let items = [edges.start, edges.end - edges.start];
+                    self.cut(index, Stage::Edges, items, *part, dispatches);
+                }
+            } else if page.super_patches.is_empty() {
+                self.cut(index, Stage::Patches, [0, count(&page.patches)], 0, dispatches);
+            } else {
+                let items = [0, count(&page.super_patches)];
+                self.cut(index, Stage::SuperPatches, items, 0, dispatches);
+            }
+        }
+    }
+
+    /// Most dispatches that fewer instances or other shares could need: with the least for a workgroup.
+    pub(crate) fn most_dispatches(&self) -> usize {
+        let mut dispatches = Vec::new();
+        let limits = PlanLimits { width: 1, ..self.limits };
+        Self { limits, ..*self }.dispatches(&mut dispatches);
+        dispatches.len()
+    }
+
+    fn cut(
+        &self,
+        page: usize,
+        stage: Stage,
+        [first, count]: [u32; 2],
+        part: u32,
+        dispatches: &mut Vec<Dispatch>,
+    ) {
+        let share = self.share(stage, count);
+        // Workgroups are numbered in 32 bits.
+        let most_workgroups = (u64::from(self.limits.row).pow(2)).min(u64::from(u32::MAX / 2));
+        let most_items = small(most_workgroups * u64::from(share));
+        let edges = &self.model.pages[page].page.edges;
+        let most_instances = self.limits.edges / (edges.end - edges.start).max(1);
+        for first_item in (first..first + count).step_by(most_items as usize) {
+            let item_count = most_items.min(first + count - first_item);
+            let blocks = item_count.div_ceil(share);
+            let step = small(most_workgroups / u64::from(blocks)).min(most_instances).max(1);
+            for first_instance in (0..self.instances).step_by(step as usize) {
+                let instance_count = step.min(self.instances - first_instance);
+                let workgroups = blocks * instance_count;
+                let row = self.limits.row.min(workgroups);
+                let work = Work {
+                    first_item,
+                    item_count,
+                    items_per_workgroup: share,
+                    first_instance,
+                    instance_count,
+                    part_count: small(self.model.frames.len() as u64),
+                    part,
+                    segment_capacity: self.segment_capacity,
+                };
+                let grid = [row, workgroups.div_ceil(row)];
+                dispatches.push(Dispatch { stage, page, work, grid });
+            }
+        }
+    }
+
+    /// Items for a workgroup: as many as it has room for, fewer where too few workgroups would be busy.
+    fn share(&self, stage: Stage, count: u32) -> u32 {
+        let width = self.limits.width;
+        let (most, least) = match stage {
+            Stage::Edges => return width * ROUNDS,
+            Stage::Patches => (width, width.div_ceil(8)),
+            Stage::SuperPatches => (SUPER_PATCHES.min(width), 1),
+        };
+        let mut share = most;
+        while share / 2 >= least
+            && u64::from(count.div_ceil(share)) * u64::from(self.instances) < BUSY
+        {
+            share /= 2;
+        }
+        share
+    }
+}
+
+fn count<T>(items: &[T]) -> u32 {
+    small(items.len() as u64)
+}
+
+/// What is beyond a u32 is beyond any limit.
+fn small(number: u64) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}

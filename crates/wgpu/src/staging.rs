@@ -1,0 +1,86 @@
+//! Memory through which each frame's input goes to the GPU, used again as soon as that has read it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use crate::Error;
+use crate::device::checked;
+
+/// Mapped, and free to be written.
+const FREE: u8 = 0;
+/// Handed to the GPU.
+const BUSY: u8 = 1;
+/// Could not be mapped: the device is lost.
+const LOST: u8 = 2;
+
+/// Buffers of one size. There come to be as many as frames are under way at once.
+#[derive(Debug)]
+pub(crate) struct Staging {
+    size: u64,
+    slots: Vec<Slot>,
+}
+
+#[derive(Debug)]
+struct Slot {
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+}
+
+impl Staging {
+    /// Of buffers of `size` bytes, a multiple of 4. The first ones are made at once.
+    pub(crate) fn new(device: &wgpu::Device, size: u64) -> Result<Self, Error> {
+        let mut staging = Self { size, slots: Vec::new() };
+        for _ in 0..3 {
+            staging.add(device)?;
+        }
+        Ok(staging)
+    }
+
+    fn add(&mut self, device: &wgpu::Device) -> Result<usize, Error> {
+        let what = "the input of a frame";
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some(what),
+            size: self.size,
+            usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: true,
+        };
+        let buffer = checked(device, what, || device.create_buffer(&descriptor))?;
+        self.slots.push(Slot { buffer, state: Arc::new(AtomicU8::new(FREE)) });
+        Ok(self.slots.len() - 1)
+    }
+
+    /// Copies the bytes of each piece to its place in `target`, when the GPU comes to `encoder`.
+    pub(crate) fn write(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::Buffer,
+        pieces: &[(u64, &[u8])],
+    ) -> Result<(), Error> {
+        let states = || self.slots.iter().map(|slot| slot.state.load(Ordering::Acquire));
+        if states().any(|state| state == LOST) {
+            return Err(Error::DeviceLost);
+        }
+        let index = match states().position(|state| state == FREE) {
+            Some(index) => index,
+            None => self.add(device)?,
+        };
+        let Slot { buffer, state } = &self.slots[index];
+        for &(offset, bytes) in pieces.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+            let range = offset..offset + bytes.len() as u64;
+            let mut view =
+                buffer.slice(range).get_mapped_range_mut().map_err(|_| Error::DeviceLost)?;
+            view.copy_from_slice(bytes);
+        }
+        buffer.unmap();
+        for &(offset, bytes) in pieces.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+            encoder.copy_buffer_to_buffer(buffer, offset, target, offset, bytes.len() as u64);
+        }
+        state.store(BUSY, Ordering::Release);
+        let state = Arc::clone(state);
+        encoder.map_buffer_on_submit(buffer, wgpu::MapMode::Write, .., move |result| {
+            state.store(if result.is_ok() { FREE } else { LOST }, Ordering::Release);
+        });
+        Ok(())
+    }
+}

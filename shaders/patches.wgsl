@@ -1,0 +1,25 @@
+// Tests patches, then the edges of those that may hold a contour edge: a workgroup takes some patches of
+// one instance. Tsiapkolis and Bénard (CGF 2024, §4.3) write survivors to memory and test edges in a
+// second dispatch; here survivors stay in the workgroup.
+
+@compute @workgroup_size(WIDTH)
+fn patches_and_edges(
+    lane: Lane,
+    @builtin(workgroup_id) workgroup: vec3u,
+    @builtin(num_workgroups) workgroups: vec3u,
+) {
+    let number = workgroup_number(workgroup, workgroups);
+    let blocks = blocks_per_instance();
+    if number >= blocks * work.instance_count {
+        return;
+    }
+    begin_patches(lane);
+    let instance = work.first_instance + number / blocks;
+    let place = (number % blocks) * work.items_per_workgroup + lane.index;
+    var survivor = Survivor(0u, 0u, 0u);
+    if lane.index < work.items_per_workgroup && place < work.item_count {
+        survivor = test_patch(work.first_item + place, instance);
+    }
+    test_edges(survivor, lane);
+    end_patches(lane);
+}

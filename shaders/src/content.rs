@@ -1,0 +1,202 @@
+//! From patch sets to what lies in buffers.
+
+use std::ops::Range;
+
+use drypoint_bounds::DoubleCone;
+use drypoint_fusion::PatchSet;
+use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Wing};
+use glam::Vec3;
+
+use crate::layout::Group;
+use crate::{EdgeEnds, EdgePlanes, Frame};
+
+/// Most edges in one entry of [`Content::patches`]: larger patches are several, with the same bound, so
+/// that no workgroup is left with far more to do than others.
+pub const MAX_PIECE: u32 = 256;
+
+/// Most patches in an entry of [`Content::super_patches`] that stands for none.
+const MAX_UNGROUPED: u32 = 64;
+
+/// All that extraction reads of a model of one or several rigid parts, part by part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Content {
+    /// The frame of each part.
+    pub frames: Vec<Frame>,
+    /// Edges of each part.
+    pub parts: Vec<Range<u32>>,
+    /// Planes of each edge, in the frame of its part.
+    pub planes: Vec<EdgePlanes>,
+    /// Vertices of each edge, numbered on from part to part, and its id in its part.
+    pub ends: Vec<EdgeEnds>,
+    /// Patches, and edges that no patch holds under bounds that never cull. They follow one another
+    /// without a gap, and hold every edge. Empty without patches.
+    pub patches: Vec<Group>,
+    /// Super-patches, and patches that none holds under bounds that never cull. They follow one another
+    /// without a gap. Empty unless a part has a second level.
+    pub super_patches: Vec<Group>,
+    /// Vertices, in model units, part by part.
+    pub positions: Vec<Vec3>,
+}
+
+/// A piece of a [`Content`] that fits a binding. Indices count from its own beginning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Page {
+    /// Edges of the content.
+    pub edges: Range<u32>,
+    /// What it holds of each part that is in it: the part, and edges of the page.
+    pub parts: Vec<(u32, Range<u32>)>,
+    /// As [`Content::patches`].
+    pub patches: Vec<Group>,
+    /// As [`Content::super_patches`].
+    pub super_patches: Vec<Group>,
+}
+
+impl Content {
+    /// Of one rigid part for each patch set. Linear; exact predicates and a normal for each edge.
+    pub fn new(parts: &[&PatchSet]) -> Self {
+        let mut content = Self::default();
+        let has_levels = parts.iter().any(|set| !set.super_patches().is_empty());
+        for (part, &set) in (0..).zip(parts) {
+            let first_edge = content.edge_count();
+            let edges = set.wings().iter().zip(set.edge_ids().iter().copied());
+            content.add_edges(set.positions(), edges);
+            content.add_patches(part, first_edge, set, has_levels);
+        }
+        content
+    }
+
+    /// Of a mesh without patches, for brute force.
+    pub fn without_patches(mesh: &Mesh, adjacency: &MeshAdjacency, filter: EdgeFilter) -> Self {
+        let mut content = Self::default();
+        let edges = adjacency.edges(filter).map(|edge| (&adjacency.wings()[edge.index()], edge));
+        content.add_edges(mesh.positions(), edges.collect::<Vec<_>>().into_iter());
+        content
+    }
+
+    /// Number of edges of all parts.
+    pub fn edge_count(&self) -> u32 {
+        count(self.planes.len())
+    }
+
+    fn add_edges<'a>(
+        &mut self,
+        positions: &[Vec3],
+        edges: impl Iterator<Item = (&'a Wing, EdgeId)> + Clone,
+    ) {
+        let vertices = edges.clone().flat_map(|(w, _)| [w.tail, w.head, w.left, w.right]);
+        let frame = Frame::new(vertices.map(|vertex| positions[vertex as usize]));
+        let first_vertex = count(self.positions.len());
+        let first_edge = self.edge_count();
+        for (wing, edge) in edges {
+            let [from_vertex, to_vertex] = wing.ends().map(|vertex| first_vertex + vertex);
+            self.planes.push(EdgePlanes::new(positions, wing, &frame));
+            self.ends.push(EdgeEnds { from_vertex, to_vertex, edge });
+        }
+        self.positions.extend_from_slice(positions);
+        self.frames.push(frame);
+        self.parts.push(first_edge..self.edge_count());
+    }
+
+    fn add_patches(&mut self, part: u32, first_edge: u32, set: &PatchSet, has_levels: bool) {
+        let frame = *self.frames.last().expect("edges of the part are there");
+        let first_piece = self.patches.len();
+        // Where the pieces of each patch begin.
+        let mut starts = Vec::new();
+        for patch in set.patches() {
+            starts.push(self.patches.len());
+            let edges = patch.edges().start + first_edge..patch.edges().end + first_edge;
+            push_pieces(&mut self.patches, frame.bound(&patch.bound), part, edges, 1);
+        }
+        starts.push(self.patches.len());
+        let always = set.always_tested();
+        let edges = always.start + first_edge..always.end + first_edge;
+        push_pieces(&mut self.patches, DoubleCone::ALWAYS, part, edges, 0);
+        if !has_levels {
+            return;
+        }
+        let mut grouped = first_piece;
+        for group in set.super_patches() {
+            let [first, end] = [group.patches().start, group.patches().end];
+            let pieces = starts[first as usize]..starts[end as usize];
+            grouped = pieces.end;
+            self.super_patches.push(Group {
+                bound: frame.bound(&group.bound),
+                first: count(pieces.start),
+                count: count(pieces.len()),
+                part,
+                weight: 1,
+            });
+        }
+        for first in (grouped..self.patches.len()).step_by(MAX_UNGROUPED as usize) {
+            let count_here = count(self.patches.len() - first).min(MAX_UNGROUPED);
+            let bound = DoubleCone::ALWAYS;
+            let (first, count) = (count(first), count_here);
+            self.super_patches.push(Group { bound, first, count, part, weight: 0 });
+        }
+    }
+
+    /// Pieces of at most `max_edges` edges and `max_groups` patches each, both at least [`MAX_PIECE`].
+    /// Patches that are longer are in several; super-patches too.
+    pub fn pages(&self, max_edges: u32, max_groups: u32) -> Vec<Page> {
+        if self.patches.is_empty() {
+            let cuts = (0..self.edge_count()).step_by(max_edges.max(1) as usize);
+            let end = |first: u32| first.saturating_add(max_edges).min(self.edge_count());
+            return cuts.map(|first| self.page(first..end(first), 0..0)).collect();
+        }
+        let mut pages = Vec::new();
+        let mut first = 0;
+        while first < self.patches.len() {
+            let start = self.patches[first].first;
+            let fits = |group: &&Group| group.first + group.count - start <= max_edges;
+            let most = max_groups.max(1) as usize;
+            let taken = self.patches[first..].iter().take(most).take_while(fits).count().max(1);
+            let last = &self.patches[first + taken - 1];
+            pages.push(self.page(start..last.first + last.count, first..first + taken));
+            first += taken;
+        }
+        pages
+    }
+
+    fn page(&self, edges: Range<u32>, patches: Range<usize>) -> Page {
+        let parts = (0..).zip(&self.parts).filter_map(|(part, of_part)| {
+            let shared = edges.start.max(of_part.start)..edges.end.min(of_part.end);
+            let local =
+                shared.start.saturating_sub(edges.start)..shared.end.saturating_sub(edges.start);
+            (shared.start < shared.end).then_some((part, local))
+        });
+        let moved = |group: &Group| Group { first: group.first - edges.start, ..*group };
+        let here = count(patches.start)..count(patches.end);
+        let super_patches = self.super_patches.iter().filter_map(|group| {
+            let first = group.first.max(here.start);
+            let end = (group.first + group.count).min(here.end);
+            let weight = if group.first < here.start { 0 } else { group.weight };
+            let shared = (first < end).then(|| end - first)?;
+            Some(Group { first: first - here.start, count: shared, weight, ..*group })
+        });
+        Page {
+            parts: parts.collect(),
+            patches: self.patches[patches].iter().map(moved).collect(),
+            super_patches: super_patches.collect(),
+            edges,
+        }
+    }
+}
+
+/// Adds `edges` in pieces of [`MAX_PIECE`]; the first has the weight of all.
+fn push_pieces(
+    patches: &mut Vec<Group>,
+    bound: DoubleCone,
+    part: u32,
+    edges: Range<u32>,
+    weight: u32,
+) {
+    for first in edges.clone().step_by(MAX_PIECE as usize) {
+        let count = MAX_PIECE.min(edges.end - first);
+        let weight = if first == edges.start { weight } else { 0 };
+        patches.push(Group { bound, first, count, part, weight });
+    }
+}
+
+fn count(length: usize) -> u32 {
+    u32::try_from(length).expect("edges and vertices have a u32 each, and patches an edge each")
+}

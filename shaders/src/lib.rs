@@ -1,0 +1,44 @@
+//! What a GPU runs and reads to find contour edges: WGSL, the structs in its buffers, and how a
+//! [`PatchSet`](drypoint_fusion::PatchSet) becomes these.
+//!
+//! No GPU API is in sight: `drypoint-wgpu` and others hand this to a device. Each source is complete,
+//! valid under the limits of plain WebGPU, and made by concatenating files of this crate, of which
+//! `shared/contour.wgsl` holds the tests of patches and edges as pure functions without bindings.
+//!
+//! - Every struct that a shader reads is here, with the same layout; tests compare both through naga.
+//! - Arithmetic is f32, in a [`Frame`] of the mesh's own: whatever its size and wherever it lies. What
+//!   that costs in accuracy is a stated margin ([`EdgePlanes::doubt`]).
+//!
+//! ```
+//! use drypoint_fusion::{FusionParams, fuse};
+//! use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
+//! use drypoint_shaders::Content;
+//! use std::ops::ControlFlow;
+//!
+//! let mesh = shapes::icosphere(500);
+//! let adjacency = MeshAdjacency::new(&mesh);
+//! let go_on = |_| ControlFlow::Continue(());
+//! let set = fuse(&mesh, &adjacency, EdgeFilter::All, &FusionParams::FAST, &go_on).unwrap();
+//!
+//! let content = Content::new(&[&set]);
+//! let viewpoint = content.frames[0].viewpoint(Viewpoint::at(glam::DVec3::new(0.0, 2.0, 9.0)));
+//! let contours = content.planes.iter().filter(|edge| edge.is_contour(viewpoint)).count();
+//! assert!(0 < contours && contours < content.planes.len());
+//! ```
+
+mod content;
+mod edge;
+mod frame;
+mod layout;
+mod sources;
+
+pub use content::{Content, MAX_PIECE, Page};
+pub use edge::{EdgeEnds, EdgePlanes};
+pub use frame::Frame;
+pub use layout::{
+    Arguments, Counters, Group, PlacedSegment, ROW, SEGMENTS_PER_WORKGROUP, Segment, Totals,
+    Transform, Work,
+};
+pub use sources::{
+    BRUTE_FORCE, CONTOUR, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY, WIDTHS, prelude,
+};

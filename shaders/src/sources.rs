@@ -1,0 +1,66 @@
+//! Sources, each complete but for the line that [`prelude`] gives.
+
+/// The tests of patches and edges alone, pure functions without bindings.
+pub const CONTOUR: &str = include_str!("../shared/contour.wgsl");
+
+/// How contour edges of several lanes find room in the output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subgroups {
+    /// Collected in the workgroup; for any device.
+    Without,
+    /// By subgroup operations, where the device has them.
+    With,
+}
+
+/// A source with and without subgroup operations.
+macro_rules! both {
+    ($($file:literal),+) => {
+        [
+            concat!(
+                include_str!("../shared/contour.wgsl"),
+                include_str!("../shared/segment.wgsl"),
+                include_str!("../shared/work.wgsl"),
+                include_str!("../shared/append_workgroup.wgsl"),
+                $(include_str!($file)),+
+            ),
+            concat!(
+                include_str!("../shared/contour.wgsl"),
+                include_str!("../shared/segment.wgsl"),
+                include_str!("../shared/work.wgsl"),
+                include_str!("../shared/append_subgroup.wgsl"),
+                $(include_str!($file)),+
+            ),
+        ]
+    };
+}
+
+/// Entry point `brute_force`. By [`Subgroups`], as all that are two.
+pub const BRUTE_FORCE: [&str; 2] = both!("../brute_force.wgsl");
+
+/// Entry point `patches_and_edges`.
+pub const PATCHES: [&str; 2] = both!("../shared/survivors.wgsl", "../patches.wgsl");
+
+/// Entry point `super_patches_to_edges`.
+pub const SUPER_PATCHES: [&str; 2] = both!("../shared/survivors.wgsl", "../super_patches.wgsl");
+
+/// Entry point `tally`.
+pub const TALLY: &str = concat!(
+    include_str!("../shared/contour.wgsl"),
+    include_str!("../shared/segment.wgsl"),
+    include_str!("../shared/work.wgsl"),
+    include_str!("../tally.wgsl"),
+);
+
+/// Entry point `place_segments`.
+pub const POSITIONS: &str =
+    concat!(include_str!("../shared/segment.wgsl"), include_str!("../positions.wgsl"));
+
+/// Workgroup widths that [`prelude`] takes: powers of two that plain WebGPU allows, and no less than a
+/// usual subgroup.
+pub const WIDTHS: [u32; 4] = [32, 64, 128, 256];
+
+/// What goes before [`BRUTE_FORCE`], [`PATCHES`] and [`SUPER_PATCHES`]: lanes in a workgroup, one of
+/// [`WIDTHS`].
+pub fn prelude(width: u32) -> String {
+    format!("const WIDTH: u32 = {width}u;\n")
+}
