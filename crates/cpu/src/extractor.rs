@@ -52,7 +52,7 @@ pub(crate) struct Sight {
 }
 
 impl<'a> Extractor<'a> {
-    /// Lays out `patches`, for the newest instructions that this processor has. Some 0.2 µs for each
+    /// Lays out `patches`, for the newest instructions that this processor has. Some 0.5 µs for each
     /// edge.
     pub fn new(patches: &'a PatchSet) -> Self {
         Self::laid_out(patches, Level::newest())
@@ -119,7 +119,7 @@ impl<'a> Extractor<'a> {
         // For what culling needs, too, so that no later call needs more.
         self.make_room(scratch);
         let blocks = 0..self.blocks.len();
-        self.test(blocks, self.sight(viewpoint), &self.edges, (&mut scratch.hits, found));
+        self.test(blocks, self.sight(viewpoint), &self.edges, (scratch.hits(0), found));
         found.statistics
     }
 
@@ -138,7 +138,7 @@ impl<'a> Extractor<'a> {
     }
 
     pub(crate) fn sight(&self, viewpoint: Viewpoint) -> Sight {
-        Sight { viewpoint, view: self.frame.view(viewpoint), eye: Eye::new(viewpoint) }
+        Sight { viewpoint, view: self.frame.view(self.level, viewpoint), eye: Eye::new(viewpoint) }
     }
 
     /// Appends the contour edges of `part`.
@@ -150,7 +150,7 @@ impl<'a> Extractor<'a> {
         (scratch, found): (&mut Scratch, &mut Found<T>),
     ) {
         self.make_room(scratch);
-        let Scratch { survivors, bound_blocks, edge_blocks, hits } = scratch;
+        let Scratch { survivors, bound_blocks, edge_blocks, hits, doubtful } = scratch;
         let groups = self.level.run(Cull {
             numbers: part.groups.clone(),
             bounds: &self.groups,
@@ -178,7 +178,7 @@ impl<'a> Extractor<'a> {
         statistics.patches_tested += groups.count + part.patches;
         statistics.patches_accepted += patches.survivors;
         statistics.edges_tested += patches.count + part.edges;
-        self.test(edge_blocks[..end].iter().copied(), sight, labels, (hits, found));
+        self.test(edge_blocks[..end].iter().copied(), sight, labels, ((hits, doubtful), found));
     }
 
     /// For whatever is looked through.
@@ -197,14 +197,14 @@ impl<'a> Extractor<'a> {
         numbers: impl ExactSizeIterator<Item = u32>,
         sight: Sight,
         labels: &[[T; LANES]],
-        (hits, found): (&mut [Hit], &mut Found<T>),
+        ((hits, doubtful), found): ((&mut [Hit], &mut [usize]), &mut Found<T>),
     ) {
         let Sight { viewpoint, view, .. } = sight;
         let (positions, wings) = (self.patches.positions(), self.patches.wings());
         let exact = Exact { positions, wings, viewpoint };
         let contours = found.room(LANES * numbers.len());
         let blocks = &self.blocks;
-        let test = Test { numbers, blocks, labels, view, exact, hits, contours };
+        let test = Test { numbers, blocks, labels, view, exact, hits, doubtful, contours };
         found.statistics.contour_edges += self.level.run(test);
     }
 }

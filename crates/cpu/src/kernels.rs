@@ -139,6 +139,8 @@ pub(crate) struct Test<'a, N, B, T> {
     pub(crate) exact: Exact<'a>,
     /// Gets the blocks that may have contour edges. Has room for all, and one more.
     pub(crate) hits: &'a mut [Hit],
+    /// Gets the numbers of those hits that have doubtful edges. Has as much room.
+    pub(crate) doubtful: &'a mut [usize],
     /// Gets the labels, in order. Has room for those of all blocks, and [`SLACK`] more.
     pub(crate) contours: &'a mut [T],
 }
@@ -154,20 +156,24 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> usize {
-        let Self { numbers, blocks, labels, view, exact, hits, contours } = self;
+        let Self { numbers, blocks, labels, view, exact, hits, doubtful, contours } = self;
         let looked_at = blocks.looked_at();
-        let (mut hit, mut doubtful) = (0, 0);
+        let (mut hit, mut doubts) = (0, 0);
         for block in numbers {
             let seen = B::look(looked_at, lanes, block, view);
             // Written in any case, and overwritten by the next if there was nothing: no branch that could be
             // guessed wrong.
             hits[hit] = Hit { block, seen };
+            // Few are, so that it is nearly always guessed right.
+            if seen.doubtful != 0 {
+                doubtful[doubts] = hit;
+                doubts += 1;
+            }
             hit += usize::from(seen.is_any());
-            doubtful |= seen.doubtful;
         }
         let hits = &mut hits[..hit];
-        if doubtful != 0 {
-            exact.decide(blocks, hits);
+        if doubts != 0 {
+            exact.decide(blocks, hits, &doubtful[..doubts]);
         }
         let labels = &labels[..blocks.len() as usize];
         let mut count = 0;
