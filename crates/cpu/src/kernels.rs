@@ -86,14 +86,18 @@ impl<N: Iterator<Item = u32>> Kernel for Cull<'_, N> {
         }
         // To go from survivor to survivor in a loop of its own is never guessed wrong, while how many
         // a block has is.
+        let mut end = 0;
         for &survivor in &survivors[..culled.survivors] {
             let held = bounds.held[survivor as usize];
-            *room(found, culled.blocks) = lanes.counted_from(held.first);
-            if held.blocks as usize > LANES {
-                let places = &mut found[culled.blocks..][..held.blocks as usize];
-                places.iter_mut().zip(held.first..).for_each(|(place, number)| *place = number);
+            // Without the block that it shares with the survivor before.
+            let (first, blocks) = (held.first.max(end), held.range().end - held.first.max(end));
+            end = held.range().end;
+            *room(found, culled.blocks) = lanes.counted_from(first);
+            if blocks as usize > LANES {
+                let places = &mut found[culled.blocks..][..blocks as usize];
+                places.iter_mut().zip(first..).for_each(|(place, number)| *place = number);
             }
-            culled.blocks += held.blocks as usize;
+            culled.blocks += blocks as usize;
             culled.count += held.count as usize;
         }
         culled
