@@ -65,12 +65,16 @@ fn what_is_found_is_exact_but_for_the_margin() {
         for levels in [Levels::One, Levels::Two] {
             let set = patches(&shape.mesh, levels);
             let content = Content::new(&[&set]);
+            let planes: Vec<_> = set
+                .wings()
+                .iter()
+                .map(|wing| EdgePlanes::in_f64(set.positions(), wing, &content.frames[0]))
+                .collect();
             for viewpoint in viewpoints(&shape.mesh, &set, &mut rng) {
                 let seen = content.frames[0].viewpoint(viewpoint);
                 let found = found(&content, seen);
                 for (place, wing) in set.wings().iter().enumerate() {
-                    let frame = &content.frames[0];
-                    if EdgePlanes::is_doubtful(set.positions(), wing, frame, seen) {
+                    if EdgePlanes::is_doubtful(&planes[place], seen) {
                         doubtful += 1;
                         continue;
                     }

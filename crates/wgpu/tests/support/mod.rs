@@ -121,13 +121,15 @@ impl Expected {
                 .flat_map(|(w, _)| [w.tail, w.head, w.left, w.right])
                 .map(|vertex| set.positions()[vertex as usize]),
         );
+        let planes: Vec<_> =
+            edges().map(|(wing, _)| EdgePlanes::in_f64(set.positions(), wing, &frame)).collect();
         for (index, placement) in (0..).zip(placements) {
             let viewpoint = placement.viewpoint_of_part().expect("it has an inverse");
             let seen = frame.viewpoint(viewpoint);
-            for (wing, &edge) in edges() {
+            for ((wing, &edge), planes) in edges().zip(&planes) {
                 let [from_vertex, to_vertex] = wing.ends();
                 let segment = Segment { from_vertex, to_vertex, placement: index, edge };
-                if EdgePlanes::is_doubtful(set.positions(), wing, &frame, seen) {
+                if EdgePlanes::is_doubtful(planes, seen) {
                     doubtful.insert(segment);
                 } else if is_contour(set.positions(), wing, viewpoint) {
                     sure.insert(segment);
