@@ -24,25 +24,25 @@ impl log::Log for Listener {
 }
 
 /// What was said so far.
-pub fn messages() -> MutexGuard<'static, Vec<String>> {
+pub(crate) fn messages() -> MutexGuard<'static, Vec<String>> {
     MESSAGES.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// Fails if anything was said.
 #[track_caller]
-pub fn expect_silence() {
+pub(crate) fn expect_silence() {
     let said = messages();
     assert!(said.is_empty(), "the validation layers have something to say: {said:#?}");
 }
 
 /// Whether the machine says that it has no GPU, not even software: tests are passed over then. Without
 /// that, having none is a failure.
-pub fn is_without_gpu() -> bool {
+pub(crate) fn is_without_gpu() -> bool {
     std::env::var_os("DRYPOINT_NO_GPU").is_some_and(|value| value == "1")
 }
 
 /// A device with validation, and limits lowered by `adjust`.
-pub fn gpu_with(adjust: &dyn Fn(&mut wgpu::Limits)) -> Gpu {
+pub(crate) fn gpu_with(adjust: &dyn Fn(&mut wgpu::Limits)) -> Gpu {
     static LISTENING: OnceLock<()> = OnceLock::new();
     LISTENING.get_or_init(|| {
         log::set_logger(&Listener).expect("no test has another");
@@ -58,6 +58,6 @@ pub fn gpu_with(adjust: &dyn Fn(&mut wgpu::Limits)) -> Gpu {
     }
 }
 
-pub fn gpu() -> Gpu {
+pub(crate) fn gpu() -> Gpu {
     gpu_with(&|_| {})
 }
