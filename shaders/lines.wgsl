@@ -28,8 +28,9 @@ const FEATHER: f32 = 1.0;
 // Depths of the spine and of the surface are rounded, by some units of 2^-24.
 const DEPTH_SLACK: f32 = 1e-6;
 
-// Pixels from the spine, along x and y, at which depths are looked up: see `is_visible`.
-const REACH: f32 = 0.75;
+// Pixels within which something behind the spine makes it visible, and beyond which it does not.
+const NEAR: f32 = 1.12;
+const FAR: f32 = 1.5;
 
 struct StrokeVertex {
     @builtin(position) position: vec4f,
@@ -105,20 +106,24 @@ fn stroke_vertex(
     return StrokeVertex(vec4f(ndc, 0.5, 1.0), from_end, to_end);
 }
 
-// Whether nothing is in front of a point of a spine.
+// How much a point of a spine can be seen, from 0 to 1.
 //
 // Beside a contour one sees past the surface that it belongs to. So if nothing else is in the way, then of
-// pixels that surround the point at least one is not nearer than it. REACH of 3/4 takes the four whose
-// centers are 1/4 to 5/4 of a pixel away along x and y: on either side of the spine, wherever it runs.
-fn is_visible(point: vec3f) -> bool {
-    var farthest = -1.0;
-    for (var i = 0u; i < 4u; i++) {
-        let offset = REACH * (2.0 * vec2f(vec2u(i % 2u, i / 2u)) - 1.0);
-        let pixel = clamp(floor(point.xy + offset), vec2f(0.0), raster.size - 1.0);
-        farthest = max(farthest, raster.depth_sign * textureLoad(depth, vec2i(pixel), 0));
-    }
+// the pixels around the point one is not nearer than it; whichever way the spine runs, the center of such
+// a pixel is within √5/2, just below NEAR. If the point is hidden, they lie beyond the border of what hides
+// it: within a pixel or so of that border it fades.
+fn visibility(point: vec3f) -> f32 {
     let slack = DEPTH_SLACK * abs(point.z) + raster.depth_step;
-    return raster.depth_sign * point.z <= farthest + slack;
+    var nearest = FAR;
+    for (var i = 0u; i < 9u; i++) {
+        let offset = vec2f(vec2u(i % 3u, i / 3u)) - 1.0;
+        let pixel = clamp(floor(point.xy) + offset, vec2f(0.0), raster.size - 1.0);
+        let surface = textureLoad(depth, vec2i(pixel), 0);
+        if raster.depth_sign * (point.z - surface) <= slack {
+            nearest = min(nearest, distance(floor(point.xy) + offset + 0.5, point.xy));
+        }
+    }
+    return (FAR - nearest) / (FAR - NEAR);
 }
 
 @fragment
@@ -131,5 +136,5 @@ fn stroke_coverage(vertex: StrokeVertex) -> @location(0) f32 {
     // Of a line thinner than a pixel, no pixel is covered wholly.
     let most = min(2.0 * stroke.half_width / FEATHER, 1.0);
     let coverage = clamp((stroke.half_width - distance) / FEATHER + 0.5, 0.0, most);
-    return select(0.0, coverage, is_visible(point));
+    return coverage * saturate(visibility(point));
 }

@@ -34,11 +34,11 @@ impl Default for LineStyle {
 /// where they cross. [`ink`](Self::ink) then blends the color into the caller's picture.
 ///
 /// Lines are hidden by a depth texture, which may be that of [`DepthPass`](crate::DepthPass) or the
-/// renderer's own. What is compared with it is the line's spine, at four pixels around it: a contour is
-/// visible if beside it something farther away is. A bias that pulls lines towards the viewer, as is usual,
-/// has to be as large as what the surface's slope makes of half the line's width, which has no limit at a
-/// contour; and shows what lies close behind a surface. Here it is no larger than rounding, and lines end
-/// within about a pixel of where a surface begins to hide them.
+/// renderer's own. What is compared with it is the line's spine, not each pixel of its width, and it is
+/// compared with the nine pixels around: a contour is visible if beside it something farther away is. The
+/// usual bias that pulls lines towards the viewer has to be as large as what the surface's slope makes of half
+/// the line's width, which has no limit at a contour, and it shows what lies close behind a surface. Here it
+/// is no larger than rounding; a line fades within 1.12 to 1.5 pixels behind the border of what hides it.
 #[derive(Debug)]
 pub struct LinePass {
     device: wgpu::Device,
