@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use drypoint_bounds::DoubleCone;
 use drypoint_mesh::EdgeId;
-use glam::{DAffine3, Vec3, Vec4};
+use glam::{DAffine3, Mat4, Vec2, Vec3, Vec4};
 
 /// Lanes that handle one segment each in a workgroup of what follows extraction.
 pub const SEGMENTS_PER_WORKGROUP: u32 = 64;
@@ -160,4 +160,40 @@ impl From<DAffine3> for Transform {
             z: row(rows.z_axis, moved.z),
         }
     }
+}
+
+/// Which part of a model is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Part {
+    /// Its index in the model.
+    pub part: u32,
+    /// Parts of an instance: part p of instance i is placement `i * part_count + p`.
+    pub part_count: u32,
+}
+
+/// How segments are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Stroke {
+    /// From the space of the scene to clip space, where z runs from 0 to w.
+    pub scene_to_clip: Mat4,
+    /// Red, green and blue multiplied by alpha, and alpha.
+    pub color: Vec4,
+    /// In pixels.
+    pub half_width: f32,
+    /// Up to a multiple of 16 bytes.
+    pub padding: [f32; 3],
+}
+
+/// The depth texture that lines are tested against.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Raster {
+    /// In pixels.
+    pub size: Vec2,
+    /// 1 where farther is larger, -1 where it is smaller.
+    pub depth_sign: f32,
+    /// Between two values of the texture; 0 if they are f32.
+    pub depth_step: f32,
 }

@@ -36,9 +36,10 @@ pub use content::{Content, MAX_PIECE, Page};
 pub use edge::{EdgeEnds, EdgePlanes};
 pub use frame::Frame;
 pub use layout::{
-    Arguments, Counters, Group, PlacedSegment, ROW, SEGMENTS_PER_WORKGROUP, Segment, Totals,
-    Transform, Work,
+    Arguments, Counters, Group, Part, PlacedSegment, ROW, Raster, SEGMENTS_PER_WORKGROUP, Segment,
+    Stroke, Totals, Transform, Work,
 };
 pub use sources::{
-    BRUTE_FORCE, CONTOUR, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY, WIDTHS, prelude,
+    BRUTE_FORCE, CONTOUR, DEPTH, INK, LINES, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY,
+    WIDTHS, prelude,
 };

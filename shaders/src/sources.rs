@@ -55,6 +55,20 @@ pub const TALLY: &str = concat!(
 pub const POSITIONS: &str =
     concat!(include_str!("../shared/segment.wgsl"), include_str!("../positions.wgsl"));
 
+/// Entry point `place_vertex`: a vertex shader for depth alone.
+pub const DEPTH: &str =
+    concat!(include_str!("../shared/segment.wgsl"), include_str!("../depth.wgsl"));
+
+/// Entry points `stroke_vertex` and `stroke_coverage`.
+pub const LINES: &str = concat!(
+    include_str!("../shared/segment.wgsl"),
+    include_str!("../shared/stroke.wgsl"),
+    include_str!("../lines.wgsl"),
+);
+
+/// Entry points `whole_screen` and `ink`.
+pub const INK: &str = concat!(include_str!("../shared/stroke.wgsl"), include_str!("../ink.wgsl"));
+
 /// Workgroup widths that [`prelude`] takes: powers of two that plain WebGPU allows, and no less than a
 /// usual subgroup.
 pub const WIDTHS: [u32; 4] = [32, 64, 128, 256];

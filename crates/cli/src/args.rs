@@ -68,6 +68,7 @@ Examples:
   drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png
   drypoint draw bunny.obj --show patches --preset fast -o bunny.png
   drypoint draw bunny.patches --model bunny.obj --show survivors --view front -o bunny.png
+  drypoint draw dragon.ply --method wgpu -o dragon.png
 
 With --json prints one object: for each class of lines chains, segments, visible_length and
 hidden_length in pixels; and with --show patches or survivors in `patches` the numbers of edges,
@@ -76,13 +77,16 @@ pub(crate) struct DrawArgs {
     /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file with --model
     #[arg(default_value = "shape:torus-knot:20000")]
     pub(crate) model: PathBuf,
-    /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg,
-    /// in this folder]
+    /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg, in
+    /// this folder; .png with --method wgpu]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The mesh that a .patches file was built from: its triangles hide lines
     #[arg(long = "model", value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
+    /// What draws
+    #[arg(long, value_enum, default_value = "cpu")]
+    pub(crate) method: DrawMethod,
     /// What to draw
     #[arg(long, value_enum, default_value = "lines")]
     pub(crate) show: Show,
@@ -99,6 +103,15 @@ pub(crate) struct DrawArgs {
     pub(crate) edges: Option<Edges>,
     #[command(flatten)]
     pub(crate) fusion: FusionArgs,
+}
+
+/// What finds the lines and draws them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DrawMethod {
+    /// The processor, by exact predicates
+    Cpu,
+    /// A GPU, in one frame: contours alone, those that are visible, as PNG
+    Wgpu,
 }
 
 /// What is on the page.
@@ -162,9 +175,9 @@ pub(crate) struct ViewArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// Classes of lines to draw
-    #[arg(long, value_enum, value_delimiter = ',', default_values = ["contour", "boundary"])]
-    pub(crate) lines: Vec<Class>,
+    /// Classes of lines to draw [default: contour,boundary; contour with --method wgpu]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) lines: Option<Vec<Class>>,
     /// With --lines crease: draw edges that bend by this angle or more, in degrees [default: 30]
     #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<f64>,
@@ -172,10 +185,9 @@ pub(crate) struct LineArgs {
     #[arg(long, value_enum, default_value = "none")]
     pub(crate) hidden: Hidden,
     /// Leave out visible pieces shorter than this that touch no longer line, in pixels: the noise
-    /// of scans. 0 draws all
-    #[arg(long, value_name = "PIXELS", default_value_t = 6.0, value_parser = number)]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) specks: f64,
+    /// of scans. 0 draws all [default: 6; 0 with --method wgpu]
+    #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) specks: Option<f64>,
     /// Width of the lines in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1.5, value_parser = number)]
     #[arg(allow_hyphen_values = true)]
@@ -313,6 +325,8 @@ pub(crate) enum Method {
     BruteForce,
     /// Tests the edges of patches that may hold a contour edge
     Patches,
+    /// As patches, on a GPU: in f32, so that an edge may differ where a face is seen edge-on
+    Wgpu,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

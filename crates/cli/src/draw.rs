@@ -12,7 +12,8 @@ use drypoint_lines::{
 use drypoint_mesh::{EdgeFilter, EdgeId, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
-use crate::args::{Class, DrawArgs, Hidden, LineArgs, Show};
+use crate::args::{Class, DrawArgs, DrawMethod, Hidden, LineArgs, Show};
+use crate::gpu;
 use crate::output::{Output, print_json, tell};
 use crate::patches;
 use crate::progress::Stage;
@@ -22,6 +23,12 @@ use crate::view;
 
 /// Degrees from which an edge is a crease, unless the user says otherwise.
 const CREASE_ANGLE: f64 = 30.0;
+
+/// Pixels below which a visible piece of line is a speck, unless the user says otherwise.
+const SPECKS: f64 = 6.0;
+
+/// Classes of lines that are drawn, unless the user says otherwise.
+const CLASSES: &[Class] = &[Class::Contour, Class::Boundary];
 
 /// What is on the page, in the shape that scripts read.
 #[derive(Debug, Serialize)]
@@ -53,6 +60,9 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     let style = style(&args.lines)?;
     let options = options(&args.lines)?;
     let shown = shown(args)?;
+    if args.method == DrawMethod::Wgpu {
+        return run_on_gpu(args, &style);
+    }
     let path = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.svg", source::stem(&args.model))),
@@ -64,10 +74,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
     let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
     let camera = view::camera(&args.view, source.mesh())?;
-    let adjacency = source.adjacency();
-    if adjacency.report().degenerate == adjacency.report().faces {
-        return Err(format!("{}: no face has any area, so there is nothing to see", source.name));
-    }
+    let adjacency = visible_adjacency(&source)?;
     let patches = match loaded {
         None if shown.is_some() => Some(build(args, &source, &adjacency)?),
         Some(patches) => Some(chosen(args, patches)?),
@@ -98,6 +105,41 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
         tell(&format!("drypoint: wrote {}", path.display()));
     }
     Ok(())
+}
+
+/// Draws with a GPU, which has its own way of finding what is visible.
+fn run_on_gpu(args: &DrawArgs, style: &Style) -> Result<(), String> {
+    gpu::check(args)?;
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}.png", source::stem(&args.model))),
+    };
+    if format_of(&path)? != Format::Png {
+        return Err(format!("{}: --method wgpu draws .png alone", path.display()));
+    }
+    let output = Output::open(&path)?;
+    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    let camera = view::camera(&args.view, source.mesh())?;
+    let adjacency = visible_adjacency(&source)?;
+    let patches = patches.map(|patches| chosen(args, patches)).transpose()?;
+    let picture = {
+        let _stage = Stage::new("drawing");
+        gpu::draw(&source, &adjacency, patches.as_ref(), &camera, style)?
+    };
+    output.write(&picture)?;
+    if args.output.is_none() {
+        tell(&format!("drypoint: wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+/// The edges of a mesh of which something can be seen.
+fn visible_adjacency(source: &Source) -> Result<MeshAdjacency, String> {
+    let adjacency = source.adjacency();
+    if adjacency.report().degenerate == adjacency.report().faces {
+        return Err(format!("{}: no face has any area, so there is nothing to see", source.name));
+    }
+    Ok(adjacency)
 }
 
 /// What of the decomposition is asked for; options that would change nothing are refused.
@@ -151,7 +193,7 @@ impl Scene<'_> {
     ) -> Drawing {
         let Self { adjacency, camera, .. } = *self;
         let mesh = self.source.mesh();
-        let wanted = args.lines.contains(&Class::Contour);
+        let wanted = classes(args).contains(&Class::Contour);
         let contours = if wanted { self.contours(patches) } else { Vec::new() };
         let segments = Segments::new(mesh, adjacency, &contours, options);
         let occluders = {
@@ -159,9 +201,12 @@ impl Scene<'_> {
             Occluders::new(mesh, adjacency)
         };
         let _stage = Stage::new("finding what is visible");
-        let params = VisibilityParams { drop_specks: args.specks, ..Default::default() };
+        let params =
+            VisibilityParams { drop_specks: args.specks.unwrap_or(SPECKS), ..Default::default() };
         let mut drawing = Drawing::new(&occluders, &segments, camera, &params);
-        drawing.layers.retain(|layer| args.lines.iter().any(|&class| layer.class == class.into()));
+        drawing
+            .layers
+            .retain(|layer| classes(args).iter().any(|&class| layer.class == class.into()));
         if let (Some(shown), Some(patches)) = (shown, patches) {
             drawing.areas = show::areas(patches, &occluders, adjacency, camera, shown);
         }
@@ -185,8 +230,12 @@ impl Scene<'_> {
     }
 }
 
+fn classes(args: &LineArgs) -> &[Class] {
+    args.lines.as_deref().unwrap_or(CLASSES)
+}
+
 fn options(args: &LineArgs) -> Result<LineOptions, String> {
-    let crease = args.lines.contains(&Class::Crease);
+    let crease = classes(args).contains(&Class::Crease);
     match args.crease_angle {
         Some(angle) if !(0.0..=180.0).contains(&angle) => {
             return Err(format!("--crease-angle: {angle} is not within 0 and 180"));
@@ -198,7 +247,7 @@ fn options(args: &LineArgs) -> Result<LineOptions, String> {
     }
     let least = args.crease_angle.unwrap_or(CREASE_ANGLE).to_radians();
     Ok(LineOptions {
-        boundary: args.lines.contains(&Class::Boundary),
+        boundary: classes(args).contains(&Class::Boundary),
         crease_angle: crease.then_some(least),
     })
 }
@@ -207,8 +256,8 @@ fn style(args: &LineArgs) -> Result<Style, String> {
     if !(0.05..=1000.0).contains(&args.width) {
         return Err(format!("--width: {} is not within 0.05 and 1000 pixels", args.width));
     }
-    if args.specks < 0.0 {
-        return Err(format!("--specks: {} is below 0", args.specks));
+    if let Some(specks) = args.specks.filter(|&specks| specks < 0.0) {
+        return Err(format!("--specks: {specks} is below 0"));
     }
     let background = match args.background.as_deref() {
         None => None,

@@ -7,6 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::args::{ExtractArgs, Method};
+use crate::gpu;
 use crate::output::{print, print_json};
 use crate::patches;
 use crate::source::{Source, holding, is_patches, load_patches};
@@ -30,9 +31,11 @@ struct Found {
 pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     let viewpoint = viewpoint(args)?;
     let has_patches = is_patches(&args.model);
-    let fuses = args.method == Some(Method::Patches) && !has_patches;
+    let fuses = matches!(args.method, Some(Method::Patches | Method::Wgpu)) && !has_patches;
     if let Some(option) = args.fusion.first_given().filter(|_| !fuses) {
-        return Err(format!("{option}: is for building patches: --method patches on a mesh"));
+        return Err(format!(
+            "{option}: is for building patches: --method patches or wgpu on a mesh"
+        ));
     }
     let found =
         if has_patches { from_patch_file(args, viewpoint)? } else { from_mesh(args, viewpoint)? };
@@ -67,10 +70,9 @@ fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> 
     let adjacency = source.adjacency();
     let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
     let mut contours = Vec::new();
-    if args.method == Some(Method::Patches) {
+    if let Some(Method::Patches | Method::Wgpu) = args.method {
         let built = patches::build(&source, &adjacency, filter, &args.fusion)?;
-        let statistics = extract_patches(&built, viewpoint, &mut contours);
-        return Ok(with_patches(&built, statistics, &contours));
+        return from_patches(&built, viewpoint, args.method);
     }
     let mut brute_force = BruteForce::new(source.mesh(), &adjacency, filter);
     let statistics = brute_force.extract(viewpoint, &mut contours);
@@ -80,16 +82,25 @@ fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> 
 
 fn from_patch_file(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
     let patches = holding(load_patches(&args.model)?, args.edges, &args.model)?;
+    from_patches(&patches, viewpoint, args.method)
+}
+
+fn from_patches(
+    patches: &PatchSet,
+    viewpoint: Viewpoint,
+    method: Option<Method>,
+) -> Result<Found, String> {
     let mut contours = Vec::new();
-    if args.method == Some(Method::BruteForce) {
-        let statistics = extract_all_wings(&patches, viewpoint, &mut contours);
-        return Ok(Found {
-            method: "brute-force",
-            ..with_patches(&patches, statistics, &contours)
-        });
-    }
-    let statistics = extract_patches(&patches, viewpoint, &mut contours);
-    Ok(with_patches(&patches, statistics, &contours))
+    let (method, statistics) = match method {
+        Some(Method::BruteForce) => {
+            ("brute-force", extract_all_wings(patches, viewpoint, &mut contours))
+        }
+        Some(Method::Wgpu) => ("wgpu", gpu::extract(patches, viewpoint, &mut contours)?),
+        Some(Method::Patches) | None => {
+            ("patches", extract_patches(patches, viewpoint, &mut contours))
+        }
+    };
+    Ok(Found { method, ..with_patches(patches, statistics, &contours) })
 }
 
 fn with_patches(patches: &PatchSet, statistics: Statistics, contours: &[EdgeId]) -> Found {

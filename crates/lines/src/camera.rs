@@ -1,7 +1,7 @@
 //! A viewpoint with a lens and a page: where a point of the model lands on paper.
 
 use drypoint_mesh::Viewpoint;
-use glam::{DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::{CameraError, Page};
 
@@ -134,6 +134,30 @@ impl Camera {
     /// of the eye.
     pub fn pixel_size(&self, point: DVec3) -> f64 {
         self.homogeneous(point).z / self.scale
+    }
+
+    /// How far `point` is ahead: of the eye, or of the target in an orthographic view. In model units, along
+    /// the line of sight.
+    pub fn depth(&self, point: DVec3) -> f64 {
+        -self.frame.back.dot(point - self.origin)
+    }
+
+    /// The same view for a GPU: from model units to clip space, where the page runs from -w to w, y **up**,
+    /// and z from 0 at the first of two different depths to w at the second. For reversed depth the first is
+    /// the larger one. In perspective both are above 0.
+    pub fn clip_matrix(&self, [first, second]: [f64; 2]) -> DMat4 {
+        let row = |axis: DVec3, scale: f64| (scale * axis).extend(-scale * axis.dot(self.origin));
+        let [width, height] = self.page.sides();
+        let x = row(self.frame.right, 2.0 * self.scale / width);
+        let y = row(self.frame.up, 2.0 * self.scale / height);
+        let depth = row(self.frame.back, -1.0);
+        let range = second - first;
+        let (z, w) = if self.viewpoint.is_point() {
+            (second / range * depth - first * second / range * DVec4::W, depth)
+        } else {
+            (depth / range - first / range * DVec4::W, DVec4::W)
+        };
+        DMat4::from_cols(x, y, z, w).transpose()
     }
 
     /// What of the segment from `a` to `b` is on the page, if anything. A segment that passes the
@@ -332,6 +356,24 @@ mod tests {
             assert!(camera.project(point).unwrap().distance(expected) < 1e-9);
         }
         assert!(clipped.fraction_in_space(0.5) < 0.3);
+    }
+
+    #[test]
+    fn a_gpu_sees_the_same_page() {
+        let (eye, target) = (DVec3::new(3.0, 2.0, 9.0), DVec3::new(0.5, 0.0, -1.0));
+        let perspective = Camera::perspective(eye, target, None, 40.0, PAGE).unwrap();
+        let orthographic = Camera::orthographic(eye, target, None, 7.0, PAGE).unwrap();
+        for camera in [perspective, orthographic] {
+            for point in [DVec3::ZERO, DVec3::new(1.0, -0.5, 2.0), DVec3::new(-2.0, 0.3, 0.1)] {
+                let depth = camera.depth(point);
+                for (depths, z) in [([depth, 20.0], 0.0), ([20.0, depth], 1.0)] {
+                    let ndc = camera.clip_matrix(depths).project_point3(point);
+                    let page = DVec2::new(200.0 + 200.0 * ndc.x, 100.0 - 100.0 * ndc.y);
+                    assert!(page.distance(camera.project(point).unwrap()) < 1e-9);
+                    assert!((ndc.z - z).abs() < 1e-12, "{} is not {z}", ndc.z);
+                }
+            }
+        }
     }
 
     #[test]

@@ -277,6 +277,11 @@ impl Contours {
         &self.device
     }
 
+    /// Placements that it was prepared for.
+    pub(crate) fn placement_count(&self) -> u32 {
+        u32::try_from(self.transforms.len()).unwrap_or(u32::MAX)
+    }
+
     pub(crate) fn work_offset(&self, dispatch: usize) -> u32 {
         #[expect(clippy::cast_possible_truncation, reason = "offsets in a binding are below 2^32")]
         let offset = (dispatch * self.layout.stride) as u32;

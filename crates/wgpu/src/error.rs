@@ -75,6 +75,19 @@ pub enum Error {
         /// Its index.
         index: usize,
     },
+    /// A surface is made from the meshes that the model's parts were made from.
+    #[error("the meshes of the surface are not those that the model was made from")]
+    OtherMeshes,
+    /// The device has no textures of that size.
+    #[error("a picture of {width} x {height} pixels is not within 1 and {limit} pixels a side")]
+    PictureSize {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// Most pixels a side.
+        limit: u32,
+    },
     /// Patches were asked for from a model that was made without.
     #[error("the model was made from a mesh without patches: brute force is all it can do")]
     NoPatches,

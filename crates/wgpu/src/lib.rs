@@ -20,6 +20,9 @@
 //! | [`Model`] | a mesh and its patches, or a rigged one's rigid parts |
 //! | [`Contours`] | what is found of one model in a frame |
 //! | [`PlacedContours`] | the same as positions in the scene |
+//! | [`DepthPass`], [`Surface`] | depths of the triangles that hide lines |
+//! | [`LinePass`], [`Lines`], [`LineTarget`] | lines on the caller's picture |
+//! | [`Picture`] | both, off screen |
 //! | [`Timer`] | GPU time of a pass, a few frames later |
 //!
 //! Order is free: the same view gives the same set of segments, in any order.
@@ -52,26 +55,34 @@
 //! ```
 
 mod contours;
+mod depth_pass;
 mod device;
 mod error;
 mod extractor;
+mod line_pass;
 mod model;
+mod picture;
 mod placed;
 mod placement;
 mod plan;
+mod raster;
 mod readback;
 mod staging;
 mod statistics;
 mod timer;
 
 pub use contours::{Capacity, Contours};
+pub use depth_pass::{DepthPass, Surface};
 pub use device::{Gpu, WANTED_FEATURES};
 pub use drypoint_shaders::{Arguments, PlacedSegment, Segment};
 pub use error::Error;
 pub use extractor::{Extractor, ExtractorOptions};
+pub use line_pass::{LinePass, LineStyle, LineTarget, Lines};
 pub use model::Model;
+pub use picture::{Picture, Subject, View};
 pub use placed::PlacedContours;
 pub use placement::Placement;
 pub use plan::Method;
+pub use raster::DepthOrder;
 pub use statistics::Statistics;
 pub use timer::Timer;

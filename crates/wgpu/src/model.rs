@@ -5,6 +5,7 @@ use std::sync::Arc;
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_shaders::{Content, EdgeEnds, EdgePlanes, Frame, Group, MAX_PIECE, Page};
+use glam::Vec3;
 use wgpu::BufferUsages;
 
 use crate::Error;
@@ -98,6 +99,13 @@ impl Model {
     /// Whether it was made from patch sets.
     pub fn has_patches(&self) -> bool {
         self.content.has_patches
+    }
+
+    /// Whether its parts have as many vertices as `meshes`.
+    pub(crate) fn is_of(&self, meshes: &[&Mesh]) -> bool {
+        let vertices: usize = meshes.iter().map(|mesh| mesh.positions().len()).sum();
+        meshes.len() == self.content.frames.len()
+            && self.content.positions.size() == ((vertices * size_of::<Vec3>()) as u64).max(16)
     }
 
     /// Vertices of all parts in model units, three f32 each, in the order that segments count in.

@@ -1,0 +1,166 @@
+//! Depths of the surfaces that hide lines.
+
+use drypoint_mesh::Mesh;
+use drypoint_shaders::{DEPTH, Part};
+use glam::Mat4;
+use wgpu::BufferUsages;
+
+use crate::Error;
+use crate::contours::Contours;
+use crate::device::{buffer, checked, filled};
+use crate::raster::{DepthOrder, Drawing, STORAGE, bind, layout, uniform};
+use crate::staging::Staging;
+
+/// Draws [`Surface`]s into a depth texture, for renderers that have no depth of their own.
+#[derive(Debug)]
+pub struct DepthPass {
+    device: wgpu::Device,
+    surface_layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    view: wgpu::Buffer,
+    view_bindings: wgpu::BindGroup,
+    staging: Staging,
+}
+
+impl DepthPass {
+    /// For depth textures of `format` with one sample a pixel, in render passes without color.
+    ///
+    /// # Errors
+    /// If the device refuses the format or the shader.
+    pub fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        order: DepthOrder,
+    ) -> Result<Self, Error> {
+        let size = size_of::<Mat4>() as u64;
+        let view = buffer(device, "a view", size, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?;
+        let (view_layout, surface_layout, pipeline) =
+            checked(device, "the shaders of depth", || Self::build(device, format, order))?;
+        let resources = vec![view.as_entire_binding()];
+        Ok(Self {
+            view_bindings: bind(device, "the bindings of a view", &view_layout, resources)?,
+            staging: Staging::new(device, size)?,
+            device: device.clone(),
+            surface_layout,
+            pipeline,
+            view,
+        })
+    }
+
+    fn build(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        order: DepthOrder,
+    ) -> (wgpu::BindGroupLayout, wgpu::BindGroupLayout, wgpu::RenderPipeline) {
+        let view_layout = layout(device, "a view", &[uniform::<Mat4>(false)]);
+        let surface_layout = layout(device, "a surface", &[uniform::<Part>(true), STORAGE]);
+        let attribute = wgpu::VertexAttribute {
+            format: wgpu::VertexFormat::Float32x3,
+            offset: 0,
+            shader_location: 0,
+        };
+        let drawing = Drawing {
+            label: "drypoint depth",
+            source: DEPTH,
+            layouts: &[Some(&view_layout), Some(&surface_layout)],
+            vertex: "place_vertex",
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 12,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &[attribute],
+            })],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            depth: Some(wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(order.compare()),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            fragment: None,
+            sample_count: 1,
+        };
+        let pipeline = drawing.pipeline(device);
+        (view_layout, surface_layout, pipeline)
+    }
+
+    /// Takes the matrix from the space of the scene to clip space, where z runs from 0 to w, for what is
+    /// recorded into `encoder` from here on. Perspective or orthographic.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn prepare(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene_to_clip: Mat4,
+    ) -> Result<(), Error> {
+        let bytes = bytemuck::bytes_of(&scene_to_clip);
+        self.staging.write(&self.device, encoder, &self.view, &[(0, bytes)])
+    }
+
+    /// Draws all that `contours`, which `surface` was made for, was prepared with. One draw for each part.
+    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, surface: &Surface, contours: &Contours) {
+        let instances = contours.placement_count() / contours.model().part_count().max(1);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.view_bindings, &[]);
+        pass.set_vertex_buffer(0, contours.model().positions().slice(..));
+        pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (offset, indices) in &surface.parts {
+            pass.set_bind_group(1, &surface.bindings, &[*offset]);
+            pass.draw_indexed(indices.clone(), 0, 0..instances);
+        }
+    }
+}
+
+/// The triangles of the model that [`Contours`] look at: 12 bytes each.
+#[derive(Debug)]
+pub struct Surface {
+    indices: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+    /// Where each part's uniform lies, and its indices.
+    parts: Vec<(u32, std::ops::Range<u32>)>,
+}
+
+impl Surface {
+    /// Uploads the triangles of `meshes`, those that the parts of the model were made from, in that order.
+    ///
+    /// # Errors
+    /// [`Error::OtherMeshes`] if the model has other vertices, or if the GPU has not enough memory.
+    pub fn new(pass: &DepthPass, contours: &Contours, meshes: &[&Mesh]) -> Result<Self, Error> {
+        let (device, model) = (&pass.device, contours.model());
+        if !model.is_of(meshes) {
+            return Err(Error::OtherMeshes);
+        }
+        let stride = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let stride = stride.max(size_of::<Part>());
+        let (mut indices, mut uniforms, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first_vertex = 0;
+        for (part, mesh) in (0..).zip(meshes) {
+            let first = index(indices.len());
+            let triangles = mesh.triangles().iter().flatten();
+            indices.extend(triangles.map(|vertex| first_vertex + vertex));
+            first_vertex += index(mesh.positions().len());
+            parts.push((index(uniforms.len()), first..index(indices.len())));
+            let part = Part { part, part_count: model.part_count() };
+            uniforms.extend_from_slice(bytemuck::bytes_of(&part));
+            uniforms.resize(uniforms.len().next_multiple_of(stride), 0u8);
+        }
+        let uniforms = filled(device, "the parts of a surface", &uniforms, BufferUsages::UNIFORM)?;
+        let size = wgpu::BufferSize::new(size_of::<Part>() as u64);
+        let part = wgpu::BufferBinding { buffer: &uniforms, offset: 0, size };
+        let resources = vec![
+            wgpu::BindingResource::Buffer(part),
+            wgpu::BindingResource::Buffer(contours.transforms()),
+        ];
+        let layout = &pass.surface_layout;
+        Ok(Self {
+            bindings: bind(device, "the bindings of a surface", layout, resources)?,
+            indices: filled(device, "the triangles of a surface", &indices, BufferUsages::INDEX)?,
+            parts,
+        })
+    }
+}
+
+fn index(length: usize) -> u32 {
+    u32::try_from(length).expect("what has a number is counted in 32 bits")
+}
