@@ -277,8 +277,8 @@ impl Contours {
         &self.device
     }
 
-    /// Placements that it was prepared for.
-    pub(crate) fn placement_count(&self) -> u32 {
+    /// Number of placements that it was prepared for last.
+    pub fn placement_count(&self) -> u32 {
         u32::try_from(self.transforms.len()).unwrap_or(u32::MAX)
     }
 
