@@ -194,74 +194,27 @@ fn ink_is_length_times_width() {
     support::expect_silence();
 }
 
-/// Into a picture of the caller's, with four samples a pixel, and the caller's own depth.
-#[test]
-fn lines_go_into_pictures_of_several_samples() {
-    if support::is_without_gpu() {
-        return;
-    }
-    let gpu = support::gpu();
-    let mesh = knot();
-    let format = wgpu::TextureFormat::Rgba8Unorm;
-    let texture = |format, sample_count, usage: wgpu::TextureUsages| {
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        })
-    };
-    let depth_format = wgpu::TextureFormat::Depth24Plus;
-    let depth = texture(depth_format, 1, wgpu::TextureUsages::TEXTURE_BINDING);
-    let samples = texture(format, 4, wgpu::TextureUsages::empty());
-    let resolved = texture(format, 1, wgpu::TextureUsages::COPY_SRC);
-    let [depth, samples, resolved_view] =
-        [&depth, &samples, &resolved].map(|texture| texture.create_view(&Default::default()));
+fn texture(
+    gpu: &Gpu,
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    })
+}
 
-    let contours = found(&gpu, &mesh, &[DAffine3::IDENTITY], &LOOK);
-    let mut depth_pass = DepthPass::new(&gpu.device, depth_format, LOOK.order).unwrap();
-    let surface = Surface::new(&depth_pass, &contours, &[&mesh]).unwrap();
-    let mut line_pass = LinePass::new(&gpu.device, format, 4).unwrap();
-    let lines = Lines::new(&line_pass, &contours).unwrap();
-    let target = LineTarget::new(&line_pass, &depth, LOOK.order).unwrap();
-
-    let scene_to_clip = LOOK.scene_to_clip().as_mat4();
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    depth_pass.prepare(&mut encoder, scene_to_clip).unwrap();
-    line_pass.prepare(&mut encoder, scene_to_clip, &LOOK.style).unwrap();
-    let ops = |load| wgpu::Operations { load, store: wgpu::StoreOp::Store };
-    let attachment = wgpu::RenderPassDepthStencilAttachment {
-        view: &depth,
-        depth_ops: Some(wgpu::Operations {
-            load: wgpu::LoadOp::Clear(LOOK.order.cleared()),
-            store: wgpu::StoreOp::Store,
-        }),
-        stencil_ops: None,
-    };
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        depth_stencil_attachment: Some(attachment),
-        ..Default::default()
-    });
-    depth_pass.record(&mut pass, &surface, &contours);
-    drop(pass);
-    line_pass.cover(&mut encoder, &target, &[&lines]);
-    let attachment = wgpu::RenderPassColorAttachment {
-        view: &samples,
-        depth_slice: None,
-        resolve_target: Some(&resolved_view),
-        ops: ops(wgpu::LoadOp::Clear(wgpu::Color::WHITE)),
-    };
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(attachment)],
-        ..Default::default()
-    });
-    line_pass.ink(&mut pass, &target);
-    drop(pass);
-    let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+/// What a texture of bytes holds when all that is in `encoder` is done.
+fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Vec<u8> {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(4 * SIDE * SIDE),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -272,12 +225,84 @@ fn lines_go_into_pictures_of_several_samples() {
         bytes_per_row: Some(4 * SIDE),
         rows_per_image: None,
     };
-    let to = wgpu::TexelCopyBufferInfo { buffer: &read, layout };
-    encoder.copy_texture_to_buffer(resolved.as_image_copy(), to, resolved.size());
+    let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
     gpu.queue.submit([encoder.finish()]);
-    read.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap());
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let found = read.slice(..).get_mapped_range().unwrap().to_vec();
+    buffer.slice(..).get_mapped_range().unwrap().to_vec()
+}
+
+/// A pass that clears and draws depth.
+fn begin_depth<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    depth: &wgpu::TextureView,
+) -> wgpu::RenderPass<'a> {
+    let attachment = wgpu::RenderPassDepthStencilAttachment {
+        view: depth,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(LOOK.order.cleared()),
+            store: wgpu::StoreOp::Store,
+        }),
+        stencil_ops: None,
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        depth_stencil_attachment: Some(attachment),
+        ..Default::default()
+    })
+}
+
+/// A pass that clears to white, draws with several samples and resolves them.
+fn begin_color<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    samples: &wgpu::TextureView,
+    resolved: &wgpu::TextureView,
+) -> wgpu::RenderPass<'a> {
+    let attachment = wgpu::RenderPassColorAttachment {
+        view: samples,
+        depth_slice: None,
+        resolve_target: Some(resolved),
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+            store: wgpu::StoreOp::Store,
+        },
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(attachment)],
+        ..Default::default()
+    })
+}
+
+/// Into a picture of the caller's, with four samples a pixel, and the caller's own depth.
+#[test]
+fn lines_go_into_pictures_of_several_samples() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = support::gpu();
+    let mesh = knot();
+    let (color, depth_format) = (wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Depth24Plus);
+    let depth = texture(&gpu, depth_format, 1, wgpu::TextureUsages::TEXTURE_BINDING);
+    let samples = texture(&gpu, color, 4, wgpu::TextureUsages::empty());
+    let resolved = texture(&gpu, color, 1, wgpu::TextureUsages::COPY_SRC);
+    let [depth, samples, resolved_view] =
+        [&depth, &samples, &resolved].map(|texture| texture.create_view(&Default::default()));
+
+    let contours = found(&gpu, &mesh, &[DAffine3::IDENTITY], &LOOK);
+    let mut depth_pass = DepthPass::new(&gpu.device, depth_format, LOOK.order).unwrap();
+    let surface = Surface::new(&depth_pass, &contours, &[&mesh]).unwrap();
+    let mut line_pass = LinePass::new(&gpu.device, color, 4).unwrap();
+    let lines = Lines::new(&line_pass, &contours).unwrap();
+    let target = LineTarget::new(&line_pass, &depth, LOOK.order).unwrap();
+
+    let scene_to_clip = LOOK.scene_to_clip().as_mat4();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    depth_pass.prepare(&mut encoder, scene_to_clip).unwrap();
+    line_pass.prepare(&mut encoder, scene_to_clip, &LOOK.style).unwrap();
+    depth_pass.record(&mut begin_depth(&mut encoder, &depth), &surface, &contours);
+    line_pass.cover(&mut encoder, &target, &[&lines]);
+    line_pass.ink(&mut begin_color(&mut encoder, &samples, &resolved_view), &target);
+    let found = read(&gpu, encoder, &resolved);
     expect_alike(&found, &draw(&gpu, &[(&mesh, &[DAffine3::IDENTITY])], &LOOK), 0.01);
     support::expect_silence();
 }
