@@ -37,8 +37,13 @@ impl EdgePlanes {
     /// Normals are of exact differences of corners where f64 holds those, that is, unless coordinates of
     /// one face differ by more than 2²⁹ in size, and then good to 2⁻⁵⁰; slivers too.
     pub fn new(positions: &[Vec3], wing: &Wing, frame: &Frame) -> Self {
-        let plane = |face| plane(positions, face, frame).as_vec4();
-        Self { left: plane(wing.left_face()), right: plane(wing.right_face()) }
+        let [left, right] = Self::in_f64(positions, wing, frame).map(|plane| plane.as_vec4());
+        Self { left, right }
+    }
+
+    /// The same planes, left and right, before they are rounded to f32.
+    pub fn in_f64(positions: &[Vec3], wing: &Wing, frame: &Frame) -> [DVec4; 2] {
+        [wing.left_face(), wing.right_face()].map(|face| plane(positions, face, frame))
     }
 
     /// Twin of `is_contour` in shared/contour.wgsl: one face from the front, the other from behind.
@@ -60,14 +65,14 @@ impl EdgePlanes {
         8.0 * unit * (viewpoint.truncate().length() + 2.0 * viewpoint.w)
     }
 
-    /// Whether f32 may mistake the side of one of the faces of `wing`: then a GPU may find the edge where
-    /// the exact definition does not, or the reverse. `viewpoint` is what [`Frame::viewpoint`] gives.
-    pub fn is_doubtful(positions: &[Vec3], wing: &Wing, frame: &Frame, viewpoint: Vec4) -> bool {
-        let doubt = Self::doubt(viewpoint);
-        [wing.left_face(), wing.right_face()].into_iter().any(|face| {
-            let plane = plane(positions, face, frame);
-            plane.truncate() != DVec3::ZERO && plane.dot(viewpoint.as_dvec4()).abs() <= doubt
-        })
+    /// Whether f32 may mistake the side of one of `planes`, which [`EdgePlanes::in_f64`] gives: then a GPU
+    /// may find the edge where the exact definition does not, or the reverse. `viewpoint` is what
+    /// [`Frame::viewpoint`] gives.
+    pub fn is_doubtful(planes: &[DVec4; 2], viewpoint: Vec4) -> bool {
+        let (doubt, viewpoint) = (Self::doubt(viewpoint), viewpoint.as_dvec4());
+        // From faces without area, all is certain.
+        let is_near = |plane: &DVec4| *plane != DVec4::ZERO && plane.dot(viewpoint).abs() <= doubt;
+        planes.iter().any(is_near)
     }
 }
 

@@ -30,7 +30,8 @@ impl BoundBlock {
     }
 }
 
-/// What a bound holds: a run of blocks of the next level, and how many patches or edges they have.
+/// What a bound holds: a run of blocks of the next level, and how many patches or edges of them are its
+/// own. It may begin with the block that the bound before ends with.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Held {
     pub(crate) first: u32,

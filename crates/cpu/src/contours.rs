@@ -90,6 +90,7 @@ pub(crate) struct Scratch {
     pub(crate) bound_blocks: Vec<u32>,
     pub(crate) edge_blocks: Vec<u32>,
     pub(crate) hits: Vec<Hit>,
+    pub(crate) doubtful: Vec<usize>,
 }
 
 impl Scratch {
@@ -101,10 +102,11 @@ impl Scratch {
         self.hits(edge_blocks);
     }
 
-    /// Room for so many blocks, and one more.
-    pub(crate) fn hits(&mut self, blocks: usize) -> &mut [Hit] {
+    /// Room for so many blocks and one more, and for the numbers of those that have doubtful edges.
+    pub(crate) fn hits(&mut self, blocks: usize) -> (&mut [Hit], &mut [usize]) {
         grow(&mut self.hits, blocks + 1);
-        &mut self.hits
+        grow(&mut self.doubtful, blocks + 1);
+        (&mut self.hits, &mut self.doubtful)
     }
 }
 

@@ -34,12 +34,13 @@ pub(crate) struct Exact<'a> {
 }
 
 impl Exact<'_> {
-    /// Sets the contour edges of `hits` right where they are doubtful. Out of line, as few are.
+    /// Sets the contour edges right of the `hits` with these numbers, where they are doubtful. Out of line,
+    /// as few are.
     #[cold]
-    pub(crate) fn decide<B: Blocks>(&self, blocks: &B, hits: &mut [Hit]) {
+    pub(crate) fn decide<B: Blocks>(&self, blocks: &B, hits: &mut [Hit], doubtful: &[usize]) {
         let mut doubts = [Doubt::default(); LANES];
         let mut count = 0;
-        for hit in 0..hits.len() {
+        for &hit in doubtful {
             let Hit { block, seen } = hits[hit];
             let mut left = seen.doubtful;
             while left != 0 {

@@ -6,30 +6,33 @@
 //!
 //! g = (n, −n · (p − c) / R) · (v − w c, w R) / |(v − w c, w R)|.
 //!
-//! They are no longer than √2 and 1, in this order. Times S = 2¹⁵ − 1 they are p and q, and rounded to whole
-//! numbers P = p + δ and Q = q + ε, off by ½ in each place at most. The product P · Q fits an i32, since
+//! They are no longer than √2 and 1, in this order. Multiplied by s and t, S = 2¹⁵ − 1 at most, they are p
+//! and q, and rounded to whole numbers P = p + δ and Q = q + ε. The product P · Q fits an i32, since
 //! S² √2 < 2³¹ by far more than the rounding, and is exact: it depends on no order and on no processor.
-//! It is off from S² g by
+//! Of each plane and of the viewpoint a length is chosen that rounds well ([`crate::whole`]): so no place
+//! of δ is beyond ⅛, and those of ε are mostly less. The product is off from s t g by
 //!
-//! P · Q − p · q = δ · q + P · ε ≤ ½ Σ |q| + (S + 1) |ε₁₂₃| + S |ε₄|,
+//! P · Q − p · q = δ · q + P · ε ≤ ⅛ Σ |q| + (S + 1) |ε₁₂₃| + S |ε₄|,
 //!
-//! as the normal in P is no longer than S + ½ √3, and its offset no more than S. That is between ½ S and
-//! 2.37 S, and known once the viewpoint is; 181 = 2⁻²³ S² √2 more pays for the 1e-7 radians that
+//! as the normal in P is no longer than S + ⅛ √3, and its offset no more than S. That is some 0.3 S, at
+//! most 1.62 S, and known once the viewpoint is; 181 = 2⁻²³ S² √2 more pays for the 1e-7 radians that
 //! [`unit_normal`] may be off by. If the product is farther from 0 than that, its sign is the plane's:
-//! else the exact predicate is asked. That is so where a plane passes the viewpoint within 7e-5 of its
-//! distance from c, or of R if that is more: from far away, where it is seen under an angle below 1e-4
-//! radians, as all planes are that are parallel to the direction of an orthographic view.
+//! else the exact predicate is asked. That is so where a plane passes the viewpoint within some 1e-5 of
+//! its distance from c, or of R if that is more, as all planes do that are parallel to the direction of an
+//! orthographic view. Few planes have to be much shorter than S to round well, and it is as much more for
+//! them.
 
 use drypoint_mesh::{Viewpoint, Wing, unit_normal};
 use glam::{DVec3, DVec4, Vec3};
 
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Level};
+use crate::whole::{SCALE, Whole};
 
 /// Faces in a block, and patches.
 pub(crate) const LANES: usize = 16;
 
-/// S.
-const SCALE: f64 = 32_767.0;
+/// What rounding changes a component of a plane by, at most: ⅛, and what f64 loses.
+const LOSS: f64 = 0.125 + 1e-9;
 
 /// Two components of sixteen planes: side by side, as one instruction multiplies and adds pairs.
 pub(crate) type Pairs = [[i16; 2]; LANES];
@@ -84,7 +87,8 @@ impl FaceBlock {
     }
 }
 
-/// Normal and offset in whole numbers; zero if the face spans no plane that can be trusted.
+/// Normal and offset in whole numbers; zero if the face spans no plane that can be trusted, or none that
+/// rounds well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Plane([i16; 4]);
 
@@ -102,6 +106,8 @@ pub(crate) struct Frame {
     center: DVec3,
     /// R; above 0.
     radius: f64,
+    /// What planes are rounded with.
+    level: Level,
 }
 
 impl Frame {
@@ -117,15 +123,15 @@ impl Frame {
             });
         let radius = 0.5 * (most - least).length();
         if radius > 0.0 && radius.is_finite() {
-            Self { center: 0.5 * (least + most), radius }
+            Self { center: 0.5 * (least + most), radius, level: Level::newest() }
         } else {
             // A point, or nothing: it has no plane either.
-            Self { center: DVec3::ZERO, radius: 1.0 }
+            Self { center: DVec3::ZERO, radius: 1.0, level: Level::newest() }
         }
     }
 
     /// From the zero direction, and if a number is not finite, nothing is sure.
-    pub(crate) fn view(&self, viewpoint: Viewpoint) -> View {
+    pub(crate) fn view(&self, level: Level, viewpoint: Viewpoint) -> View {
         let (direction, w) = (viewpoint.from_point(self.center), viewpoint.w() * self.radius);
         let homogeneous = DVec4::from((direction, w));
         let size = homogeneous.length();
@@ -133,13 +139,15 @@ impl Frame {
         if size < 1e-100 {
             return View { pairs: [[0; 2]; 2], margin: 0 };
         }
-        let scaled = homogeneous * (SCALE / size);
-        let [x, y, z, w] = scaled.to_array().map(|number| rounded(number / SCALE));
-        let lost = DVec4::from([x, y, z, w].map(f64::from)) - scaled;
-        let margin = 0.5 * scaled.abs().element_sum()
+        let unit = (homogeneous / size).to_array();
+        let whole = Whole::new(level, unit);
+        let scaled = DVec4::from(unit) * whole.scale;
+        let lost = DVec4::from(whole.losses(unit));
+        let [x, y, z, w] = whole.numbers;
+        let margin = LOSS * scaled.abs().element_sum()
             + (SCALE + 1.0) * lost.truncate().length()
             + SCALE * lost.w.abs();
-        #[expect(clippy::cast_possible_truncation, reason = "at most 2.37 S")]
+        #[expect(clippy::cast_possible_truncation, reason = "at most 1.62 S")]
         let margin = (margin + 181.0).ceil() as i32;
         View { pairs: [[x, y], [z, w]], margin }
     }
@@ -148,14 +156,10 @@ impl Frame {
     pub(crate) fn plane(&self, corners: [Vec3; 3]) -> Plane {
         let Some(normal) = unit_normal(corners) else { return Plane::default() };
         let offset = -normal.dot(corners[0].as_dvec3() - self.center) / self.radius;
-        Plane([normal.x, normal.y, normal.z, offset].map(rounded))
+        let vector = [normal.x, normal.y, normal.z, offset.clamp(-1.0, 1.0)];
+        Whole::within(self.level, vector, LOSS)
+            .map_or(Plane::default(), |whole| Plane(whole.numbers))
     }
-}
-
-/// `number`, cut off at −1 and 1, in units of 1 / S; 0 if it is NaN.
-#[expect(clippy::cast_possible_truncation, reason = "at most S")]
-fn rounded(number: f64) -> i16 {
-    (SCALE * number.clamp(-1.0, 1.0)).round() as i16
 }
 
 #[cfg(test)]
@@ -189,7 +193,7 @@ mod tests {
         let mut blocks = EdgePlanes::default();
         blocks.push(&frame, positions, &[WING], 0);
         let levels = Instructions::ALL.into_iter().filter_map(Instructions::level);
-        let mut seen = levels.map(|level| level.run(Look(&blocks, frame.view(viewpoint))));
+        let mut seen = levels.map(|level| level.run(Look(&blocks, frame.view(level, viewpoint))));
         let first = seen.next().expect("one is always here");
         assert!(seen.all(|seen| seen == first), "other instructions see {first:?} otherwise");
         first
@@ -206,6 +210,15 @@ mod tests {
         let along = normal.any_orthonormal_vector();
         let along = turn.cos() * along + turn.sin() * normal.cross(along);
         Some(corners[0].as_dvec3() + away * (along + sine * normal))
+    }
+
+    /// Numbers from −1 to 1, the same each time.
+    fn fixed() -> impl FnMut() -> f64 {
+        let mut state = 1u32;
+        move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 23) - 1.0
+        }
     }
 
     proptest! {
@@ -246,46 +259,57 @@ mod tests {
         }
     }
 
-    /// How far the product of whole numbers is from S² g, for a plane and a viewpoint about the origin,
-    /// as a share of the margin.
-    fn error(frame: &Frame, [normal, at, eye]: [DVec3; 3]) -> f64 {
-        let normal = normal.normalize();
-        let offset = -normal.dot(at.clamp_length_max(frame.radius)) / frame.radius;
-        let plane = [normal.x, normal.y, normal.z, offset].map(rounded).map(f64::from);
-        let View { pairs: [[x, y], [z, w]], margin } = frame.view(Viewpoint::at(eye));
-        let product: f64 = plane.iter().zip([x, y, z, w]).map(|(a, b)| a * f64::from(b)).sum();
-        let exact = normal.dot(eye) + offset * frame.radius;
-        let exact = SCALE * SCALE * exact / eye.length().hypot(frame.radius);
-        (product - exact).abs() / f64::from(margin)
-    }
-
-    /// A margin that nothing came near would be no margin, and a test of it none. The worst is where
-    /// all components of one are rounded along the other: climbed to, from anywhere.
+    /// A margin that nothing came near would be no margin, and a test of it none. The worst is a plane
+    /// that is rounded along the viewpoint as far as it may be, and lies along what the viewpoint loses.
     #[test]
     fn products_come_close_to_the_margin() {
         let frame = Frame::new(
             &[Vec3::ONE, Vec3::NEG_ONE],
             &[Wing { tail: 0, head: 1, left: 1, right: 1 }],
         );
-        let mut rng = 1u32;
-        let mut number = || {
-            rng = rng.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(rng >> 8) / f64::from(1 << 23) - 1.0
-        };
-        let mut most = 0.0f64;
-        for _ in 0..100 {
-            let mut near = |size: f64| size * DVec3::new(number(), number(), number());
-            let mut best = [near(1.0), near(2.0), near(4.0)];
-            let mut worst = error(&frame, best);
-            for _ in 0..2000 {
-                let next = best.map(|vector| vector + near(3e-5));
-                if error(&frame, next) > worst {
-                    (best, worst) = (next, error(&frame, next));
-                }
-            }
-            most = most.max(worst);
+        let mut rng = fixed();
+        for _ in 0..1000 {
+            let eye = 3.0 * DVec3::new(rng(), rng(), rng());
+            let View { pairs: [[x, y], [z, w]], margin } =
+                frame.view(frame.level, Viewpoint::at(eye));
+            let unit = DVec4::from((eye, frame.radius)).normalize().to_array();
+            let viewpoint = Whole::new(frame.level, unit);
+            assert_eq!(viewpoint.numbers, [x, y, z, w]);
+            let lost = DVec4::from(viewpoint.losses(unit));
+            let [normal, offset] =
+                [lost.truncate().normalize(), DVec3::new(lost.w.signum(), 0.0, 0.0)];
+            let plane = DVec4::from((normal, offset.x)) * SCALE;
+            let seen = DVec4::from(unit) * viewpoint.scale;
+            let error = LOSS * seen.abs().element_sum() + plane.dot(lost);
+            let share = error / f64::from(margin);
+            assert!((0.95..1.0).contains(&share), "{share}");
         }
-        assert!((0.9..1.0).contains(&most), "{most}");
+    }
+
+    #[test]
+    fn planes_lose_no_more_than_they_may() {
+        let frame = Frame::new(
+            &[Vec3::ONE, Vec3::NEG_ONE],
+            &[Wing { tail: 0, head: 1, left: 1, right: 1 }],
+        );
+        let (mut rng, mut lengths) = (fixed(), 0.0);
+        for number in 0..3000 {
+            // Some nearly along an axis, where little is to choose from.
+            let thin = 0.5f64.powi(number % 20);
+            let mut corner = || DVec3::new(rng(), thin * rng(), rng()).as_vec3();
+            let corners = [corner(), corner(), corner()];
+            let normal = unit_normal(corners).unwrap();
+            let offset = -normal.dot(corners[0].as_dvec3()) / frame.radius;
+            let plane = DVec4::from(frame.plane(corners).0.map(f64::from));
+            let exact = DVec4::from((normal, offset));
+            let axis = exact.abs().max_position();
+            let scale = plane[axis] / exact[axis];
+            assert!((1.0..SCALE + 1e-3).contains(&scale), "{scale}");
+            let lost = plane - scale * exact;
+            assert!(lost.abs().max_element() <= LOSS, "{lost}");
+            lengths += scale / SCALE / 3000.0;
+        }
+        assert!(lengths > 0.7, "{lengths}");
     }
 
     #[test]

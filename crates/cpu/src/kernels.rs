@@ -86,14 +86,18 @@ impl<N: Iterator<Item = u32>> Kernel for Cull<'_, N> {
         }
         // To go from survivor to survivor in a loop of its own is never guessed wrong, while how many
         // a block has is.
+        let mut end = 0;
         for &survivor in &survivors[..culled.survivors] {
             let held = bounds.held[survivor as usize];
-            *room(found, culled.blocks) = lanes.counted_from(held.first);
-            if held.blocks as usize > LANES {
-                let places = &mut found[culled.blocks..][..held.blocks as usize];
-                places.iter_mut().zip(held.first..).for_each(|(place, number)| *place = number);
+            // Without the block that it shares with the survivor before.
+            let (first, blocks) = (held.first.max(end), held.range().end - held.first.max(end));
+            end = held.range().end;
+            *room(found, culled.blocks) = lanes.counted_from(first);
+            if blocks as usize > LANES {
+                let places = &mut found[culled.blocks..][..blocks as usize];
+                places.iter_mut().zip(first..).for_each(|(place, number)| *place = number);
             }
-            culled.blocks += held.blocks as usize;
+            culled.blocks += blocks as usize;
             culled.count += held.count as usize;
         }
         culled
@@ -139,6 +143,8 @@ pub(crate) struct Test<'a, N, B, T> {
     pub(crate) exact: Exact<'a>,
     /// Gets the blocks that may have contour edges. Has room for all, and one more.
     pub(crate) hits: &'a mut [Hit],
+    /// Gets the numbers of those hits that have doubtful edges. Has as much room.
+    pub(crate) doubtful: &'a mut [usize],
     /// Gets the labels, in order. Has room for those of all blocks, and [`SLACK`] more.
     pub(crate) contours: &'a mut [T],
 }
@@ -154,20 +160,24 @@ where
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> usize {
-        let Self { numbers, blocks, labels, view, exact, hits, contours } = self;
+        let Self { numbers, blocks, labels, view, exact, hits, doubtful, contours } = self;
         let looked_at = blocks.looked_at();
-        let (mut hit, mut doubtful) = (0, 0);
+        let (mut hit, mut doubts) = (0, 0);
         for block in numbers {
             let seen = B::look(looked_at, lanes, block, view);
             // Written in any case, and overwritten by the next if there was nothing: no branch that could be
             // guessed wrong.
             hits[hit] = Hit { block, seen };
+            // Few are, so that it is nearly always guessed right.
+            if seen.doubtful != 0 {
+                doubtful[doubts] = hit;
+                doubts += 1;
+            }
             hit += usize::from(seen.is_any());
-            doubtful |= seen.doubtful;
         }
         let hits = &mut hits[..hit];
-        if doubtful != 0 {
-            exact.decide(blocks, hits);
+        if doubts != 0 {
+            exact.decide(blocks, hits, &doubtful[..doubts]);
         }
         let labels = &labels[..blocks.len() as usize];
         let mut count = 0;

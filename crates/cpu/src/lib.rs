@@ -85,6 +85,7 @@ mod simd;
 mod statistics;
 mod strips;
 mod threads;
+mod whole;
 
 pub use batch::Batch;
 pub use brute_force::{BruteForce, FaceSigns, FaceStrips, StoredPlanes, extract_naively};

@@ -231,6 +231,12 @@ impl Contours {
         wgpu::BufferBinding { buffer: &self.input, offset: self.layout.transforms, size }
     }
 
+    /// Buffers through which the input of frames goes: as many as frames were ever under way at once, and at
+    /// least three.
+    pub fn staging_buffers(&self) -> usize {
+        self.staging.count()
+    }
+
     /// Asks for the statistics of what `encoder` holds by now: to be called after the pass has ended.
     pub fn request_statistics(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.readback.request(encoder, &self.totals);
@@ -321,15 +327,18 @@ pub(crate) fn read(
         usage,
         mapped_at_creation: false,
     };
-    let copy = checked(device, "what is read back", || device.create_buffer(&descriptor))?;
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_buffer_to_buffer(source, 0, &copy, 0, size);
-    queue.submit([encoder.finish()]);
     let (sender, receiver) = std::sync::mpsc::channel();
-    copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Nobody listens any more if polling failed.
-        let _ = sender.send(result);
-    });
+    let copy = checked(device, "what is read back", || {
+        let copy = device.create_buffer(&descriptor);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(source, 0, &copy, 0, size);
+        queue.submit([encoder.finish()]);
+        copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // Nobody listens any more if polling failed.
+            let _ = sender.send(result);
+        });
+        copy
+    })?;
     device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Error::DeviceLost)?;
     let mapped = receiver.try_recv().map_err(|_| Error::DeviceLost)?;
     mapped.map_err(|_| Error::DeviceLost)?;

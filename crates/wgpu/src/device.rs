@@ -109,8 +109,23 @@ pub(crate) fn checked<T>(
     match found.collect::<Vec<_>>().pop() {
         None => Ok(made),
         Some(wgpu::Error::OutOfMemory { .. }) => Err(Error::OutOfMemory { what }),
+        Some(_) if is_lost(device) => Err(Error::DeviceLost),
         Some(error) => Err(Error::Refused { what, reason: error.to_string() }),
     }
+}
+
+/// Whether the device is lost: nothing can be written to what it makes. To be asked when something failed,
+/// as the callback that tells is the caller's.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("a sign of life"),
+        size: 4,
+        usage: wgpu::BufferUsages::MAP_WRITE,
+        mapped_at_creation: true,
+    });
+    let is_lost = buffer.get_mapped_range_mut(..).is_err();
+    pollster::block_on(scope.pop()).is_some() || is_lost
 }
 
 /// A buffer with `size` bytes, or at least 4, that may hold more than the device allows.

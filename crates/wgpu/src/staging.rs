@@ -36,6 +36,11 @@ impl Staging {
         Ok(staging)
     }
 
+    /// Number of buffers.
+    pub(crate) fn count(&self) -> usize {
+        self.slots.len()
+    }
+
     fn add(&mut self, device: &wgpu::Device) -> Result<usize, Error> {
         let what = "the input of a frame";
         let descriptor = wgpu::BufferDescriptor {

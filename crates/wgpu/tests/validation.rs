@@ -2,6 +2,13 @@
 
 mod support;
 
+const SOURCE: &str = "
+@vertex fn corners() -> @builtin(position) vec4f { return vec4f(0.0); }
+// There is no such attachment.
+@fragment fn shade() -> @location(1) vec4f { return vec4f(0.0); }
+";
+
+/// A program of its own, since all tests of one hear the same messages.
 #[test]
 fn a_planted_error_is_heard() {
     if support::is_without_gpu() {
@@ -11,21 +18,8 @@ fn a_planted_error_is_heard() {
     support::expect_silence();
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
-        source: wgpu::ShaderSource::Wgsl(
-            "@vertex fn main() -> @builtin(position) vec4f { return vec4f(0.0); }".into(),
-        ),
+        source: wgpu::ShaderSource::Wgsl(SOURCE.into()),
     });
-    // An attribute that the shader does not read.
-    let attribute = wgpu::VertexAttribute {
-        format: wgpu::VertexFormat::Float32,
-        offset: 0,
-        shader_location: 0,
-    };
-    let buffers = [Some(wgpu::VertexBufferLayout {
-        array_stride: 4,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &[attribute],
-    })];
     let _ = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: None,
@@ -33,7 +27,7 @@ fn a_planted_error_is_heard() {
             module: &module,
             entry_point: None,
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &buffers,
+            buffers: &[],
         },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(wgpu::DepthStencilState {
@@ -44,14 +38,19 @@ fn a_planted_error_is_heard() {
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState::default(),
-        fragment: None,
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[],
+        }),
         multiview_mask: None,
         cache: None,
     });
     let heard = std::mem::take(&mut *support::messages());
     assert!(
-        heard.iter().any(|message| message.contains("not consumed")),
-        "the Vulkan validation layers are not installed (Debian: vulkan-validationlayers), or do not \
-         listen: {heard:?}"
+        heard.iter().any(|message| message.contains("writes to output location 1")),
+        "the Vulkan validation layers are not installed (Debian: vulkan-validationlayers), or nobody \
+         listens to them: {heard:?}"
     );
 }

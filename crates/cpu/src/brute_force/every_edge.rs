@@ -87,13 +87,15 @@ impl<'mesh, B: Blocks> EveryEdge<'mesh, B> {
         let Contours { found, scratch, .. } = contours;
         found.statistics = Statistics { edges_tested: self.wings.len(), ..Statistics::default() };
         let (positions, wings) = (self.mesh.positions(), &self.wings[..]);
+        let (hits, doubtful) = scratch.hits(self.labels.len());
         let count = self.level.run(Test {
             numbers: 0..self.blocks.len(),
             blocks: &self.blocks,
             labels: &self.labels,
-            view: self.frame.view(viewpoint),
+            view: self.frame.view(self.level, viewpoint),
             exact: Exact { positions, wings, viewpoint },
-            hits: scratch.hits(self.labels.len()),
+            hits,
+            doubtful,
             contours: found.room(LANES * self.labels.len()),
         });
         found.statistics.contour_edges = count;

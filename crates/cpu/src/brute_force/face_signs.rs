@@ -80,7 +80,7 @@ impl<'mesh> FaceSigns<'mesh> {
                 Ordering::Greater => BACK_TURNED,
             }
         };
-        let (view, sides) = (self.frame.view(viewpoint), &mut self.sides[..]);
+        let (view, sides) = (self.frame.view(self.level, viewpoint), &mut self.sides[..]);
         self.level.run(Signs { faces: &self.faces, count: triangles.len(), view, ask, sides });
         let found = &mut contours.found;
         found.statistics = Statistics { edges_tested: self.edges.len(), ..Statistics::default() };

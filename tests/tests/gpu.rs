@@ -1,0 +1,161 @@
+//! Extraction with wgpu on every shape and model, from the 252 views and from directions.
+
+#[path = "../../crates/wgpu/tests/support/mod.rs"]
+mod support;
+
+use std::ops::ControlFlow;
+
+use drypoint_cpu::extract_patches;
+use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
+use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
+use drypoint_shaders::{Content, EdgePlanes};
+use drypoint_tests::{meshes, viewpoints};
+use drypoint_wgpu::{Capacity, Contours, Extractor, Gpu, Method, Model, Placement, Segment};
+use glam::DVec4;
+use rayon::prelude::*;
+
+/// Instances in one go. All views at once are more segments than one binding holds.
+const INSTANCES: usize = 50;
+
+/// What the definition says about one view.
+struct View {
+    viewpoint: Viewpoint,
+    /// Ascending.
+    contours: Vec<EdgeId>,
+    /// Edges with a face within the margin of f32, ascending.
+    doubtful: Vec<EdgeId>,
+}
+
+struct Subject<'a> {
+    name: &'a str,
+    mesh: &'a Mesh,
+    adjacency: &'a MeshAdjacency,
+    views: Vec<View>,
+}
+
+impl<'a> Subject<'a> {
+    fn new(name: &'a str, mesh: &'a Mesh, adjacency: &'a MeshAdjacency) -> Self {
+        let content = Content::without_patches(mesh, adjacency, EdgeFilter::Convex);
+        let edges: Vec<EdgeId> = content.ends.iter().map(|ends| ends.edge).collect();
+        let frame = content.frames[0];
+        let in_f64 =
+            |&edge: &EdgeId| EdgePlanes::in_f64(mesh.positions(), &adjacency.wing(edge), &frame);
+        let planes: Vec<[DVec4; 2]> = edges.par_iter().map(in_f64).collect();
+        let view = |viewpoint| {
+            let seen = frame.viewpoint(viewpoint);
+            let is_doubtful = |planes: &[DVec4; 2]| EdgePlanes::is_doubtful(planes, seen);
+            let doubtful = edges.iter().zip(&planes).filter(|(_, planes)| is_doubtful(planes));
+            let doubtful = doubtful.map(|(edge, _)| *edge).collect();
+            let mut contours = Vec::new();
+            contour_edges(mesh, adjacency, viewpoint, EdgeFilter::Convex, &mut contours);
+            contours.sort_unstable();
+            View { viewpoint, contours, doubtful }
+        };
+        let viewpoints = [viewpoints::protocol(mesh), viewpoints::orthographic()].concat();
+        let views = viewpoints.into_par_iter().map(view).collect();
+        Self { name, mesh, adjacency, views }
+    }
+
+    fn patches(&self, levels: Levels) -> PatchSet {
+        let params = FusionParams { levels, ..FusionParams::FAST };
+        let go_on = |_| ControlFlow::Continue(());
+        fuse(self.mesh, self.adjacency, EdgeFilter::Convex, &params, &go_on)
+            .expect("nothing stops it")
+    }
+
+    /// Compares what both methods find. The number of edges that patches had tested.
+    fn check(&self, gpu: &Gpu, extractor: &Extractor, set: &PatchSet) -> u64 {
+        let model = Model::new(extractor, &[set]).expect("there is memory");
+        let most = |views: &[View]| views.iter().map(|v| v.contours.len() + v.doubtful.len()).sum();
+        let segments: usize =
+            self.views.chunks(INSTANCES).map(most).max().expect("there are views");
+        let capacity = Capacity { placements: INSTANCES as u32, segments: segments as u32 };
+        let mut contours = Contours::new(extractor, &model, capacity).expect("there is memory");
+        let mut edges_tested = 0;
+        for views in self.views.chunks(INSTANCES) {
+            let placements: Vec<_> =
+                views.iter().map(|view| Placement::at_origin(view.viewpoint)).collect();
+            for method in [Method::BruteForce, Method::Patches] {
+                let found = support::extract(gpu, extractor, &mut contours, &placements, method);
+                self.compare(views, &found.expect("it fits"), &format!("{method:?}"));
+            }
+            let statistics = contours.read_statistics(&gpu.queue).expect("the device is there");
+            edges_tested += statistics.edges_tested;
+        }
+        edges_tested
+    }
+
+    fn compare(&self, views: &[View], found: &[Segment], what: &str) {
+        let mut by_view = vec![Vec::new(); views.len()];
+        for segment in found {
+            by_view[segment.placement as usize].push(segment.edge);
+        }
+        for (view, mut found) in views.iter().zip(by_view) {
+            let what = format!("{}, {:?}, {what}", self.name, view.viewpoint);
+            found.sort_unstable();
+            assert!(found.is_sorted_by(|a, b| a < b), "{what}: an edge is there twice");
+            let is_in = |edges: &[EdgeId], edge: &EdgeId| edges.binary_search(edge).is_ok();
+            let wrong = |ours: &[EdgeId], others: &[EdgeId]| {
+                let lacks = |edge: &&EdgeId| !is_in(others, edge) && !is_in(&view.doubtful, edge);
+                ours.iter().find(lacks).copied()
+            };
+            assert_eq!(wrong(&view.contours, &found), None, "{what}: it is missing");
+            assert_eq!(wrong(&found, &view.contours), None, "{what}: it is no contour edge");
+        }
+    }
+
+    /// Edges that the CPU runtime tests, and those of patches that are so close to being culled, or not, that
+    /// rounding decides.
+    fn tested_on_the_cpu(&self, set: &PatchSet) -> [u64; 2] {
+        let content = Content::new(&[set]);
+        let mut counts = [0; 2];
+        for view in &self.views {
+            let statistics = extract_patches(set, view.viewpoint, &mut Vec::new());
+            counts[0] += statistics.edges_tested as u64;
+            let seen = content.frames[0].viewpoint(view.viewpoint);
+            for patch in &content.patches {
+                let survives = |growth: f32| {
+                    let mut bound = patch.bound;
+                    bound.apex_distance = bound.apex_distance * (1.0 + growth) + growth;
+                    bound.tan_squared *= 1.0 + growth;
+                    bound.may_hold_contour_towards(seen.truncate() - seen.w * bound.center, seen.w)
+                };
+                if survives(4e-6) != survives(-4e-6) {
+                    counts[1] += u64::from(patch.count);
+                }
+            }
+        }
+        counts
+    }
+}
+
+/// Prints what is left to f32, as `cargo test --test gpu -- --nocapture` shows.
+#[test]
+fn every_shape_and_model_is_as_the_definition_says() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = support::gpu();
+    let extractor = Extractor::new(&gpu.device).expect("shaders compile");
+    let result = meshes::for_each("", |name, mesh| {
+        let adjacency = MeshAdjacency::new(mesh);
+        let subject = Subject::new(name, mesh, &adjacency);
+        let contours: usize = subject.views.iter().map(|view| view.contours.len()).sum();
+        let doubtful: usize = subject.views.iter().map(|view| view.doubtful.len()).sum();
+        let set = subject.patches(Levels::One);
+        let edges_tested = subject.check(&gpu, &extractor, &set);
+        let [on_the_cpu, borderline] = subject.tested_on_the_cpu(&set);
+        println!(
+            "{name}: {contours} contour edges, {doubtful} edges within the margin; {edges_tested} edges \
+             tested, {on_the_cpu} on the CPU, {borderline} of patches on the border"
+        );
+        // On the CPU, nothing is culled of a mesh whose squares f32 does not hold: it is not scaled there.
+        let is_scaled = !(1e-13..1e17).contains(&set.provenance().unit);
+        let more = if is_scaled { 0 } else { on_the_cpu.saturating_sub(edges_tested) };
+        assert!(edges_tested.saturating_sub(on_the_cpu).max(more) <= borderline, "{name}");
+        subject.check(&gpu, &extractor, &subject.patches(Levels::Two));
+        Ok(())
+    });
+    result.expect("every mesh can be read");
+    support::expect_silence();
+}
