@@ -74,9 +74,14 @@ impl Gpu {
 }
 
 async fn find_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter, Error> {
-    if std::env::var_os("WGPU_ADAPTER_NAME").is_some() {
-        let named = wgpu::util::initialize_adapter_from_env(instance, None).await;
-        return named.map_err(|error| Error::NoAdapter { reason: error.to_string() });
+    // What wgpu has for it panics if there is none of that name.
+    if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
+        let wanted = name.to_lowercase();
+        let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let has_name =
+            |adapter: &wgpu::Adapter| adapter.get_info().name.to_lowercase().contains(&wanted);
+        let reason = format!("none has a name with '{name}' in it");
+        return adapters.into_iter().find(has_name).ok_or(Error::NoAdapter { reason });
     }
     let options = wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,

@@ -12,7 +12,7 @@ fn help_has_examples() {
         ("", &["torus-knot", "cad-part", "huge-sphere"][..]),
         ("patches", &["fast", "default", "best", "paper", "far", "near", "tight", "mesh-shader"]),
         ("patches", &["--levels", "--partition", "super_patches", "peak_memory"]),
-        ("draw", &["--show", "survivors", "--model", "--preset"]),
+        ("draw", &["--show", "survivors", "--model", "--preset", "--method", "wgpu"]),
         ("extract", &["super_patches_tested", "--runtime", ".patches"]),
     ] {
         let help = bench.succeed(&format!("{command} --help"));

@@ -8,3 +8,5 @@ mod help;
 mod options;
 mod patches;
 mod show;
+#[cfg(feature = "wgpu")]
+mod wgpu;
