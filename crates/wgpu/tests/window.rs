@@ -110,16 +110,16 @@ impl Session {
         Ok(self.connection.set_input_focus(focus, window, CURRENT_TIME)?.check()?)
     }
 
-    /// Waits until the title holds `part`, and gives it.
+    /// Waits for a title that is as it should be, and gives it.
     #[track_caller]
-    fn wait_for(&self, part: &str) -> String {
+    fn wait_for(&self, what: &str, is_right: &dyn Fn(&str) -> bool) -> String {
         let start = Instant::now();
         loop {
             let title = self.title().expect("the server is there");
-            if title.contains(part) {
+            if is_right(&title) {
                 return title;
             }
-            assert!(start.elapsed() < PATIENCE, "the title never says '{part}': {title}");
+            assert!(start.elapsed() < PATIENCE, "{what}: {title}");
             std::thread::sleep(Duration::from_millis(50));
         }
     }
@@ -159,6 +159,30 @@ impl Session {
     }
 }
 
+/// What the title says.
+#[derive(Clone, Copy, Debug)]
+struct Counts {
+    contours: u64,
+    tested: u64,
+    edges: u64,
+}
+
+impl Counts {
+    fn of(title: &str) -> Self {
+        let words: Vec<_> = title.split_whitespace().collect();
+        // "… N contour edges; … N of N edges tested in …"
+        let before = |word: &str, back: usize| {
+            let place = words.iter().position(|&w| w == word).expect("the title has its words");
+            words[place - back].parse().expect("a number is before it")
+        };
+        Self {
+            contours: before("contour", 1),
+            tested: before("tested", 4),
+            edges: before("tested", 2),
+        }
+    }
+}
+
 /// Keycodes of the X server's own keyboard.
 const C: u8 = 54;
 const P: u8 = 33;
@@ -176,32 +200,23 @@ fn the_viewer_shows_contours_and_hears_keys() -> Result<(), Box<dyn Error>> {
     let mut viewer = Running(viewer.spawn()?);
     let session = Session::new(&display)?;
 
-    let culled = session.wait_for("edges tested in");
+    let is_counted = |title: &str| title.contains("edge") && Counts::of(title).contours > 0;
+    let culled = session.wait_for("contours are counted", &is_counted);
     assert!(culled.contains("30 instances") && culled.contains("culling on"), "{culled}");
+    let culled = Counts::of(&culled);
+    assert!(culled.tested < culled.edges / 2, "most are culled: {culled:?}");
     let lines = session.look("lines")?;
     assert!((0.01..0.3).contains(&lines.dark), "lines are drawn: {lines:?}");
     assert!(lines.white > 0.5 && lines.colorful < 0.001, "on white: {lines:?}");
 
     session.focus()?;
-    // What is tested without culling is all that there is.
     session.press(C)?;
-    let all = session.wait_for("culling off");
-    let numbers = |title: &str| -> Vec<u64> {
-        title.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    let tests_all = |title: &str| {
+        let counts = Counts::of(title);
+        title.contains("culling off") && counts.tested == counts.edges
     };
-    let last_two = |title: &str| {
-        let numbers = numbers(title);
-        [numbers[numbers.len() - 2], numbers[numbers.len() - 1]]
-    };
-    let start = Instant::now();
-    let mut title = all;
-    while last_two(&title)[0] != last_two(&title)[1] {
-        assert!(start.elapsed() < PATIENCE, "not all edges are tested: {title}");
-        title = session.wait_for("culling off");
-    }
-    assert!(last_two(&culled)[0] < last_two(&culled)[1] / 2, "most are culled: {culled}");
-    let contours = |title: &str| numbers(title)[1];
-    assert_eq!(contours(&culled), contours(&title), "{culled} / {title}");
+    let all = session.wait_for("without culling all are tested", &tests_all);
+    assert_eq!(Counts::of(&all).contours, culled.contours);
 
     session.press(P)?;
     let start = Instant::now();
