@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let to_scene: Vec<_> = (0..9).map(place).collect();
     let mut nodes = ContourNodes::new(&renderer, &mesh, 9)?;
 
-    let eye = DVec3::new(9.0, 12.0, 22.0);
+    let eye = DVec3::new(9.0, 14.0, 24.0);
     let lens = perspective_infinite_reverse(36f64.to_radians(), 1.0, 0.1);
     let scene_to_clip = lens * look_at_mat4(eye, DVec3::ZERO, DVec3::Y);
     let viewpoint = Viewpoint::at(eye);
@@ -136,10 +136,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// In three rows, every other one a mirror image.
 fn place(index: u32) -> DAffine3 {
     let [column, row] = [index % 3, index / 3].map(f64::from);
-    let mirror = if index % 2 == 0 { 1.0 } else { -1.0 };
-    DAffine3::from_translation(DVec3::new(column - 1.0, 0.0, row - 1.0) * 5.5)
+    let mirror = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+    DAffine3::from_translation(DVec3::new(column - 1.0, 0.0, row - 1.0) * 6.5)
         * DAffine3::from_rotation_y(f64::from(index))
-        * DAffine3::from_scale(DVec3::new(mirror, 1.0, 1.0) * 1.6)
+        * DAffine3::from_scale(DVec3::new(mirror, 1.0, 1.0))
 }
 
 impl Renderer {

@@ -54,15 +54,6 @@ fn start_server() -> (Running, String) {
     (Running(server), format!(":{number}"))
 }
 
-/// The example, which cargo builds beside the tests.
-fn viewer() -> PathBuf {
-    let test = std::env::current_exe().expect("this runs from a file");
-    let folder = test.parent().and_then(|deps| deps.parent()).expect("tests are in target/*/deps");
-    let viewer = folder.join("examples/viewer");
-    assert!(viewer.exists(), "build it first: cargo build -p drypoint-wgpu --example viewer");
-    viewer
-}
-
 struct Session {
     connection: RustConnection,
     root: Window,
@@ -194,7 +185,7 @@ fn the_viewer_shows_contours_and_hears_keys() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     let (_server, display) = start_server();
-    let mut viewer = Command::new(viewer());
+    let mut viewer = Command::new(support::example("viewer"));
     viewer.args(["--instances", "30", "--still"]).env("DISPLAY", &display);
     viewer.env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     let mut viewer = Running(viewer.spawn()?);

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
@@ -76,6 +77,15 @@ pub(crate) fn gpu_with(adjust: &dyn Fn(&mut wgpu::Limits)) -> Gpu {
 /// A device with validation.
 pub(crate) fn gpu() -> Gpu {
     gpu_with(&|_| {})
+}
+
+/// An example, which cargo builds beside the tests.
+pub(crate) fn example(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("this runs from a file");
+    let folder = test.parent().and_then(|deps| deps.parent()).expect("tests are in target/*/deps");
+    let example = folder.join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    assert!(example.exists(), "build it first: cargo build -p drypoint-wgpu --example {name}");
+    example
 }
 
 /// Patches of all edges.

@@ -1,0 +1,47 @@
+//! The examples without a window, run as a user runs them.
+
+mod support;
+
+use std::error::Error;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Runs an example that writes a picture, and gives the share of its dark pixels.
+#[track_caller]
+fn darkness(name: &str, arguments: &[&str]) -> Result<f64, Box<dyn Error>> {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+    let output = Command::new(support::example(name)).args(arguments).arg(&path).output()?;
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout)?;
+    assert!(said.contains("edges_tested"), "{said}");
+    let pixels = pixels(&path)?;
+    let is_dark = |pixel: &&[u8]| pixel[..3].iter().all(|&channel| channel < 100);
+    let count = pixels.chunks_exact(4).filter(is_dark).count();
+    Ok(count as f64 / (pixels.len() / 4) as f64)
+}
+
+fn pixels(path: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut png = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+    let mut pixels = vec![0; png.output_buffer_size().ok_or("it fits memory")?];
+    png.next_frame(&mut pixels)?;
+    Ok(pixels)
+}
+
+#[test]
+fn pictures_of_the_examples_have_lines() -> Result<(), Box<dyn Error>> {
+    if support::is_without_gpu() {
+        return Ok(());
+    }
+    let model = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tetrahedron.obj");
+    std::fs::write(
+        &model,
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+    )?;
+    let tetrahedron = darkness("headless", &[&model.to_string_lossy()])?;
+    assert!((1e-4..0.02).contains(&tetrahedron), "{tetrahedron}");
+    let field = darkness("render_graph", &[])?;
+    assert!((0.01..0.2).contains(&field), "{field}");
+    Ok(())
+}
