@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::markdown::device;
 use super::plots::{Plot, plots};
 use super::{Claim, Report, Table, claims, tables};
 
@@ -47,6 +48,7 @@ pub fn page(report: &Report) -> Result<String, String> {
                     (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
                     (machine.system) "."
                 }
+                @if let Some(gpu) = &report.gpu { p { "GPU: " (device(gpu)) "." } }
                 p {
                     "Contour edges are those that the exact definition gives: every extractor was compared with \
                      it, from each of its viewpoints, before it was counted or timed, but for the naive loop, \
@@ -160,7 +162,10 @@ mod tests {
                 calibration: None,
                 times: Vec::new(),
                 drawing: Vec::new(),
+                gpu: None,
+                gpu_calibration: Vec::new(),
             }],
+            gpu: None,
         }
     }
 
