@@ -270,6 +270,12 @@ impl Report {
         self.meshes.iter().find(|mesh| mesh.name == name)
     }
 
+    /// Whether nothing was counted and timed but on a GPU.
+    pub fn is_on_gpu_alone(&self) -> bool {
+        let is_empty = |mesh: &MeshReport| mesh.decompositions.is_empty() && mesh.times.is_empty();
+        self.gpu.is_some() && self.meshes.iter().all(is_empty)
+    }
+
     /// What was measured on a GPU replaced by that of `other`. Only meshes that both have keep any.
     #[must_use]
     pub fn with_gpu_of(mut self, other: &Self) -> Self {

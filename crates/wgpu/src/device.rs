@@ -74,9 +74,14 @@ impl Gpu {
 }
 
 async fn find_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter, Error> {
-    if std::env::var_os("WGPU_ADAPTER_NAME").is_some() {
-        let named = wgpu::util::initialize_adapter_from_env(instance, None).await;
-        return named.map_err(|error| Error::NoAdapter { reason: error.to_string() });
+    if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
+        // As wgpu's own helper, which panics if there is none of that name.
+        let wanted = name.to_lowercase();
+        let is_wanted =
+            |adapter: &wgpu::Adapter| adapter.get_info().name.to_lowercase().contains(&wanted);
+        let named = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let reason = format!("none has {name:?} in its name, as WGPU_ADAPTER_NAME says");
+        return named.into_iter().find(is_wanted).ok_or(Error::NoAdapter { reason });
     }
     let options = wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,

@@ -45,11 +45,12 @@ struct Options {
     #[arg(long)]
     fresh: bool,
     /// Also write what was measured to docs/measurements.json of this repository, and into the
-    /// marked tables of its documents, all of whose meshes must be given
+    /// marked tables of its documents, all of whose meshes must be given. With --only gpu and --only
+    /// gpu-calibration, and for the report of such a run, the rest stays as it is
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
     /// Measure nothing: make the page and the tables from a report.json, or from the repository's
-    /// docs/measurements.json, which has no plots
+    /// docs/measurements.json, which has few plots
     #[arg(long, value_name = "REPORT", conflicts_with_all = ["quick", "rounds", "only", "fresh", "files"])]
     from: Option<PathBuf>,
     /// Mesh files; those that are not found here are looked for in the folder of DRYPOINT_MODELS

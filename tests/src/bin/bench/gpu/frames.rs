@@ -200,8 +200,8 @@ impl<'a> Frames<'a> {
     ) -> Result<Frame, Error> {
         let device = &self.gpu.device;
         let [extraction, drawing] = &mut self.timers;
-        let start = Instant::now();
         let mut encoder = device.create_command_encoder(&Default::default());
+        let start = Instant::now();
         variant.prepare(&mut encoder, placements)?;
         let timestamp_writes = Some(extraction.compute_pass());
         let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
