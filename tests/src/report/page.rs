@@ -27,8 +27,6 @@ pub fn page(report: &Report) -> Result<String, String> {
     for mesh in &report.meshes {
         meshes.push((mesh, plots(mesh)?));
     }
-    let run = &report.run;
-    let machine = &report.machine;
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -40,15 +38,7 @@ pub fn page(report: &Report) -> Result<String, String> {
             }
             body {
                 h1 { "Drypoint: measurements" }
-                p {
-                    "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
-                    (run.rounds) " rounds"
-                    @if run.is_quick { " (quick: small meshes and cheap methods only)" }
-                    ". Machine: " (machine.processor) ", " (machine.threads) " threads, "
-                    (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
-                    (machine.system) "."
-                }
-                @if let Some(gpu) = &report.gpu { p { "GPU: " (device(gpu)) "." } }
+                (provenance(report))
                 p {
                     "Contour edges are those that the exact definition gives: every extractor was compared with \
                      it, from each of its viewpoints, before it was counted or timed, but for the naive loop, \
@@ -81,6 +71,20 @@ pub fn page(report: &Report) -> Result<String, String> {
         }
     };
     Ok(markup.into_string())
+}
+
+fn provenance(Report { machine, run, gpu, .. }: &Report) -> Markup {
+    html! {
+        p {
+            "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
+            (run.rounds) " rounds"
+            @if run.is_quick { " (quick: small meshes and cheap methods only)" }
+            ". Machine: " (machine.processor) ", " (machine.threads) " threads, "
+            (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
+            (machine.system) "."
+            @if let Some(gpu) = gpu { " GPU: " (device(gpu)) "." }
+        }
+    }
 }
 
 fn claimed(claims: &[Claim]) -> Markup {
