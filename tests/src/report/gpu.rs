@@ -59,6 +59,8 @@ pub struct GpuTested {
     pub segments: f64,
     /// Edges tested.
     pub edges: f64,
+    /// Edges that the same bounds let through on the CPU; none of brute force.
+    pub edges_on_cpu: Option<f64>,
     /// Patches tested, and super-patches.
     pub bounds: f64,
     /// Those of them that were not culled.

@@ -2,6 +2,7 @@
 
 use drypoint_mesh::{EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
 use drypoint_shaders::{EdgePlanes, Frame};
+use drypoint_tests::judges::Judge;
 use drypoint_wgpu::{Placement, Segment};
 use rayon::prelude::*;
 
@@ -36,6 +37,15 @@ impl<'a> Seen<'a> {
     pub(super) fn capacity(&self) -> u32 {
         let all: usize = self.views.iter().map(|(_, edges)| edges.len()).sum();
         u32::try_from(all + all / 16 + 1024).unwrap_or(u32::MAX)
+    }
+
+    /// How many edges a view tests on the CPU, on average.
+    pub(super) fn edges_tested(&self, judge: &dyn Judge) -> f64 {
+        let test = |found: &mut Vec<EdgeId>, (viewpoint, _): &(Viewpoint, _)| {
+            judge.extract(*viewpoint, found).edges
+        };
+        let all: usize = self.views.par_iter().map_init(Vec::new, test).sum();
+        all as f64 / self.views.len() as f64
     }
 
     /// How many edges are found where the definition has none, or the reverse: all of them within the

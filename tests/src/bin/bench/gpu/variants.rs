@@ -4,6 +4,7 @@ use drypoint_baselines::Meshlets;
 use drypoint_fusion::{CostModel, FusionParams, Levels};
 use drypoint_mesh::{Mesh, MeshAdjacency};
 use drypoint_shaders::Content;
+use drypoint_tests::judges::Judge;
 use drypoint_tests::report::{BRUTE_FORCE, INSTANCES, MESHLETS, OURS, TB24, TWO_LEVELS};
 use drypoint_wgpu::{Capacity, Contours, Error, Extractor, Method, Model, Placement};
 
@@ -48,32 +49,40 @@ impl Work for Variant<'_> {
     }
 }
 
-/// What is uploaded for each, brute force first. Our own patches are made for GPUs. The published ones are
-/// left out where things must be quick.
-pub(super) fn contents(
-    mesh: &Mesh,
-    adjacency: &MeshAdjacency,
-    is_quick: bool,
-) -> Result<Vec<(&'static str, Content)>, String> {
-    let patches = |params: FusionParams| {
-        Ok::<_, String>(Content::new(&[&fused(mesh, adjacency, FILTER, &params)?]))
-    };
-    let ours = FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT };
-    let mut contents = vec![
-        (BRUTE_FORCE, Content::without_patches(mesh, adjacency, FILTER)),
-        (OURS, patches(ours)?),
-        (TWO_LEVELS, patches(FusionParams { levels: Levels::Two, ..ours })?),
-    ];
-    if !is_quick {
-        contents.push((TB24, patches(FusionParams::PAPER)?));
-    }
-    contents.push((MESHLETS, meshlets(mesh, adjacency)));
-    Ok(contents)
+/// Edges in groups, or one by one.
+pub(super) struct Grouped<'a> {
+    pub(super) name: &'static str,
+    pub(super) content: Content,
+    /// What does the same on the CPU, with exact predicates; none for edges one by one.
+    pub(super) judge: Option<Box<dyn Judge + 'a>>,
 }
 
-fn meshlets(mesh: &Mesh, adjacency: &MeshAdjacency) -> Content {
+/// For each variant, brute force first. Our own patches are made for GPUs. The published ones are left
+/// out where things must be quick.
+pub(super) fn groupings<'a>(
+    mesh: &'a Mesh,
+    adjacency: &MeshAdjacency,
+    is_quick: bool,
+) -> Result<Vec<Grouped<'a>>, String> {
+    let patches = |name, params: FusionParams| {
+        let set = fused(mesh, adjacency, FILTER, &params)?;
+        let content = Content::new(&[&set]);
+        Ok::<_, String>(Grouped { name, content, judge: Some(Box::new(set)) })
+    };
+    let ours = FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT };
+    let edges = Content::without_patches(mesh, adjacency, FILTER);
+    let mut groupings = vec![
+        Grouped { name: BRUTE_FORCE, content: edges, judge: None },
+        patches(OURS, ours)?,
+        patches(TWO_LEVELS, FusionParams { levels: Levels::Two, ..ours })?,
+    ];
+    if !is_quick {
+        groupings.push(patches(TB24, FusionParams::PAPER)?);
+    }
     let meshlets = Meshlets::new(mesh, adjacency, FILTER, &Default::default());
     let edges = meshlets.edge_ids().iter().map(|&edge| (&adjacency.wings()[edge.index()], edge));
     let groups = meshlets.bounds().zip(meshlets.edge_counts());
-    Content::with_groups(mesh.positions(), edges, groups)
+    let content = Content::with_groups(mesh.positions(), edges, groups);
+    groupings.push(Grouped { name: MESHLETS, content, judge: Some(Box::new(meshlets)) });
+    Ok(groupings)
 }
