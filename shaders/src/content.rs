@@ -73,6 +73,31 @@ impl Content {
         content
     }
 
+    /// Of a mesh whose edges somebody else has grouped: `edges` in the order of the groups, and for each
+    /// group in turn a bound of its edges' planes, in model units, and how many edges it has. Those that
+    /// are left over are always tested.
+    ///
+    /// # Panics
+    /// If groups have more edges than there are.
+    pub fn with_groups<'a>(
+        positions: &[Vec3],
+        edges: impl Iterator<Item = (&'a Wing, EdgeId)> + Clone,
+        groups: impl IntoIterator<Item = (DoubleCone, u32)>,
+    ) -> Self {
+        let mut content = Self::default();
+        content.add_edges(positions, edges);
+        let frame = content.frames[0];
+        let (mut first, all) = (0, content.edge_count());
+        for (bound, edge_count) in groups {
+            assert!(edge_count <= all - first, "groups have more edges than there are");
+            let edges = first..first + edge_count;
+            push_pieces(&mut content.patches, frame.bound(&bound), 0, edges, 1);
+            first += edge_count;
+        }
+        push_pieces(&mut content.patches, DoubleCone::ALWAYS, 0, first..all, 0);
+        content
+    }
+
     /// Number of edges of all parts.
     pub fn edge_count(&self) -> u32 {
         count(self.planes.len())

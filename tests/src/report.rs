@@ -1,6 +1,8 @@
 //! What `cargo xtask bench` measures, as it is written to JSON and read back.
 
 mod claims;
+mod gpu;
+mod gpu_tables;
 mod markdown;
 mod page;
 mod paper;
@@ -8,6 +10,9 @@ mod plots;
 mod tables;
 
 pub use claims::{CONES, Claim, FAST, MESHLETS, OURS, SNCH, SNCH_SINGLE, TB24, TWO_LEVELS, claims};
+pub use gpu::{
+    BRUTE_FORCE, FLOOR, GpuCalibration, GpuFrame, GpuReport, GpuRun, GpuTested, GpuTime, INSTANCES,
+};
 pub use markdown::{blocks, marks, replace_blocks};
 pub use page::page;
 pub use tables::{Table, tables};
@@ -32,6 +37,9 @@ pub struct Report {
     pub run: Run,
     /// What was measured on each mesh.
     pub meshes: Vec<MeshReport>,
+    /// Which GPU, if there was one.
+    #[serde(default)]
+    pub gpu: Option<GpuRun>,
 }
 
 /// Where a benchmark ran.
@@ -89,6 +97,12 @@ pub struct MeshReport {
     pub times: Vec<Time>,
     /// The stages of a drawing, in seconds.
     pub drawing: Vec<(String, f64)>,
+    /// Extraction on the GPU; none if there was no GPU, or no edge.
+    #[serde(default)]
+    pub gpu: Option<GpuReport>,
+    /// What the cost model is made of on the GPU.
+    #[serde(default)]
+    pub gpu_calibration: Vec<GpuCalibration>,
 }
 
 /// Something counted from three sets of viewpoints.
@@ -201,6 +215,11 @@ impl Quartiles {
         let mut data = Data::new(values);
         Self { low: data.lower_quartile(), median: data.median(), high: data.upper_quartile() }
     }
+
+    /// Of how many times as much the first of each pair is.
+    pub fn of_ratios(others: &[f64], own: &[f64]) -> Self {
+        Self::of(others.iter().zip(own).map(|(other, own)| other / own))
+    }
 }
 
 impl Sample {
@@ -249,6 +268,25 @@ impl Report {
     /// The mesh of that name.
     pub fn mesh(&self, name: &str) -> Option<&MeshReport> {
         self.meshes.iter().find(|mesh| mesh.name == name)
+    }
+
+    /// Whether nothing was counted and timed but on a GPU.
+    pub fn is_on_gpu_alone(&self) -> bool {
+        let is_empty = |mesh: &MeshReport| mesh.decompositions.is_empty() && mesh.times.is_empty();
+        self.gpu.is_some() && self.meshes.iter().all(is_empty)
+    }
+
+    /// What was measured on a GPU replaced by that of `other`. Only meshes that both have keep any.
+    #[must_use]
+    pub fn with_gpu_of(mut self, other: &Self) -> Self {
+        self.gpu.clone_from(&other.gpu);
+        for mesh in &mut self.meshes {
+            let measured = other.mesh(&mesh.name);
+            mesh.gpu = measured.and_then(|measured| measured.gpu.clone());
+            mesh.gpu_calibration =
+                measured.map_or(Vec::new(), |measured| measured.gpu_calibration.clone());
+        }
+        self
     }
 
     /// The same without what was counted from each viewpoint: tables need no more.

@@ -86,6 +86,45 @@ fn what_cannot_be_measured_is_said_and_nothing_is_written() {
     check(&["-o", "out", "--rounds", "0"], "--rounds");
 }
 
+/// An adapter that there is not, and for a machine that has one a run on it.
+#[test]
+fn without_a_gpu_its_sections_are_left_out_unless_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_mesh(folder);
+    let bench = |adapter: Option<&str>, more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bench"));
+        let arguments = ["-o", "out", "--quick", "--rounds", "1", "bumpy.obj"];
+        command.args(arguments).args(more).current_dir(folder).env_remove("DRYPOINT_MODELS");
+        command.envs(adapter.map(|name| ("WGPU_ADAPTER_NAME", name)));
+        command.output().unwrap()
+    };
+    let report = || -> Report {
+        serde_json::from_str(&fs::read_to_string(folder.join("out/report.json")).unwrap()).unwrap()
+    };
+    let nowhere = Some("no such adapter");
+    for section in ["gpu", "gpu-calibration"] {
+        let output = bench(nowhere, &["--only", section]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && error.contains("no GPU adapter"), "{error}");
+    }
+    let output = bench(nowhere, &[]);
+    assert!(output.status.success(), "{output:?}");
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(error.matches("nothing is measured on a GPU").count(), 1, "{error}");
+    assert!(report().gpu.is_none() && report().meshes[0].gpu.is_none());
+
+    if std::env::var_os("DRYPOINT_NO_GPU").is_some_and(|value| value == "1") {
+        return;
+    }
+    let output = bench(None, &["--only", "gpu", "--only", "gpu-calibration"]);
+    assert!(output.status.success(), "{output:?}");
+    let mesh = &report().meshes[0];
+    assert!(report().is_on_gpu_alone() && mesh.gpu.is_some());
+    // Four widths, where workgroups of 256 are allowed, with subgroups where there are any.
+    assert!([4, 8].contains(&mesh.gpu_calibration.len()));
+}
+
 #[test]
 fn validation_says_what_agreed() {
     let folder = tempfile::tempdir().unwrap();

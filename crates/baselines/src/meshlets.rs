@@ -122,6 +122,16 @@ impl<'mesh> Meshlets<'mesh> {
         self.always_tested.len()
     }
 
+    /// Every edge, meshlet by meshlet, and behind them those that are in none.
+    pub fn edge_ids(&self) -> &[EdgeId] {
+        self.edges.ids()
+    }
+
+    /// Number of edges of every meshlet.
+    pub fn edge_counts(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.meshlets.iter().map(|meshlet| meshlet.edges.end - meshlet.edges.start)
+    }
+
     /// The bound of every meshlet. [`DoubleCone::ALWAYS`] where the normals spread too far to be
     /// bounded.
     pub fn bounds(&self) -> impl ExactSizeIterator<Item = DoubleCone> + '_ {
@@ -256,6 +266,22 @@ mod tests {
             let faces = mesh.triangles().len();
             assert!((faces / 16..faces / 12).contains(&meshlets.len()), "{}", meshlets.len());
         }
+    }
+
+    #[test]
+    fn edges_lie_meshlet_by_meshlet() {
+        let mesh = shapes::bumpy_sphere(500);
+        let meshlets = meshlets(&mesh, EdgeFilter::Convex, &MeshletParams::default());
+        let mut first = 0;
+        for (meshlet, edge_count) in meshlets.meshlets.iter().zip(meshlets.edge_counts()) {
+            assert_eq!(meshlet.edges, first..first + edge_count);
+            first += edge_count;
+        }
+        assert_eq!(first as usize + meshlets.always_tested(), meshlets.edge_ids().len());
+        let mut ids = meshlets.edge_ids().to_vec();
+        ids.sort_unstable();
+        let all = MeshAdjacency::new(&mesh).edges(EdgeFilter::Convex).collect::<Vec<_>>();
+        assert_eq!(ids, all);
     }
 
     #[test]

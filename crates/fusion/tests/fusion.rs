@@ -13,7 +13,7 @@ use drypoint_mesh::{
 use glam::{DVec3, Vec3};
 
 /// Every preset, and settings that nobody should choose.
-const ALL_PARAMS: [FusionParams; 15] = [
+const ALL_PARAMS: [FusionParams; 16] = [
     FusionParams::FAST,
     FusionParams::DEFAULT,
     FusionParams::BEST,
@@ -21,6 +21,7 @@ const ALL_PARAMS: [FusionParams; 15] = [
     FusionParams { views: ViewProfile::NEAR, ..FusionParams::FAST },
     FusionParams { cost: CostModel::CPU_SIMD, ..FusionParams::DEFAULT },
     FusionParams { cost: CostModel::MESH_SHADER, ..FusionParams::DEFAULT },
+    FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT },
     FusionParams {
         method: Method::Planes { cell: 0, looks: 0, sweeps: 2, tears: 1 },
         ..FusionParams::FAST
@@ -276,6 +277,7 @@ fn no_patch_is_in_vain() {
         in_blocks,
         FusionParams { levels: Levels::Two, ..in_blocks },
         FusionParams { cost: CostModel::MESH_SHADER, ..FusionParams::DEFAULT },
+        FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT },
     ] {
         let set = fuse_silently(&shapes::bumpy_sphere(3_000), EdgeFilter::Convex, &params);
         // Below a super-patch, three in ten are tested.

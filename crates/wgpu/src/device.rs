@@ -74,14 +74,14 @@ impl Gpu {
 }
 
 async fn find_adapter(instance: &wgpu::Instance) -> Result<wgpu::Adapter, Error> {
-    // What wgpu has for it panics if there is none of that name.
     if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
+        // As wgpu's own helper, which panics if there is none of that name.
         let wanted = name.to_lowercase();
-        let adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
-        let has_name =
+        let is_wanted =
             |adapter: &wgpu::Adapter| adapter.get_info().name.to_lowercase().contains(&wanted);
-        let reason = format!("none has a name with '{name}' in it");
-        return adapters.into_iter().find(has_name).ok_or(Error::NoAdapter { reason });
+        let named = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let reason = format!("none has {name:?} in its name, as WGPU_ADAPTER_NAME says");
+        return named.into_iter().find(is_wanted).ok_or(Error::NoAdapter { reason });
     }
     let options = wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,

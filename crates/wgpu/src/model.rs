@@ -61,7 +61,12 @@ impl Model {
         Self::upload(extractor, &Content::without_patches(mesh, adjacency, filter))
     }
 
-    fn upload(extractor: &Extractor, content: &Content) -> Result<Self, Error> {
+    /// Uploads what was made by other means than the two above: groups of one's own
+    /// ([`Content::with_groups`]), or a content that several devices share.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn upload(extractor: &Extractor, content: &Content) -> Result<Self, Error> {
         let device = extractor.device();
         let positions: &[f32] = bytemuck::cast_slice(&content.positions);
         let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC;

@@ -2,7 +2,7 @@
 
 use super::paper::TB24_TESTED_SHARE;
 use super::tables::count;
-use super::{Decomposition, Report};
+use super::{Decomposition, FLOOR, INSTANCES, Report};
 
 /// A claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,8 +34,12 @@ pub const CONES: &str = "anchored cones";
 /// Meshlets.
 pub const MESHLETS: &str = "meshlets";
 
-/// On the bunny, if it was measured: per view, mean of the 252 viewpoints.
+/// On the bunny, if it was measured: per view, mean of the 252 viewpoints. And of GPUs.
 pub fn claims(report: &Report) -> Vec<Claim> {
+    [of_counts(report), of_gpu(report)].concat()
+}
+
+fn of_counts(report: &Report) -> Vec<Claim> {
     let Some(bunny) = report.mesh("stanford-bunny") else { return Vec::new() };
     let Some(ours) = bunny.decomposition(OURS) else { return Vec::new() };
     let share = ours.tested.far.edges.mean / bunny.edges as f64;
@@ -53,6 +57,51 @@ pub fn claims(report: &Report) -> Vec<Claim> {
             Some(fewer_edges(bunny.decomposition(ours)?, bunny.decomposition(theirs)?))
         },
     ));
+    claims
+}
+
+/// How many times as fast as brute force patches are to be on GPUs.
+const OVER_BRUTE_FORCE: [(&str, f64); 2] = [("stanford-bunny", 5.0), ("dragon_vrip", 2.8)];
+
+/// How many times as long as reading its buffers brute force may take.
+const OVER_READING: f64 = 1.5;
+
+/// Microseconds that recording a frame of the bunny may take.
+const RECORDING: f64 = 100.0;
+
+/// A processor that plays the GPU says nothing.
+fn of_gpu(report: &Report) -> Vec<Claim> {
+    let Some(gpu) = report.gpu.as_ref().filter(|gpu| !gpu.is_software) else { return Vec::new() };
+    let mut claims = Vec::new();
+    let mut claim = |what, measured, holds| {
+        let why = format!("Measured on {}.", gpu.device);
+        claims.push(Claim { what, measured, holds, why });
+    };
+    for mesh in &report.meshes {
+        let Some(measured) = &mesh.gpu else { continue };
+        let name = &mesh.name;
+        let least = OVER_BRUTE_FORCE.iter().find(|(mesh, _)| mesh == name);
+        if let Some((ours, (_, least))) = measured.time(OURS).zip(least) {
+            let times = ours.over_brute_force.median;
+            let what =
+                format!("on the GPU, patches of {name} are {least} times as fast as brute force");
+            claim(what, format!("{times:.1}"), times >= *least);
+        }
+        if let Some(floor) = measured.time(FLOOR) {
+            let times = floor.over_brute_force.median;
+            let what = format!(
+                "on the GPU, brute force of {name} takes {OVER_READING} times as long as reading its \
+                 buffers at most"
+            );
+            claim(what, format!("{times:.2}"), times <= OVER_READING);
+        }
+        let frame = measured.frames.iter().find(|frame| frame.name == OURS);
+        if let Some(frame) = frame.filter(|_| name == "stanford-bunny") {
+            let micros = frame.recording.median;
+            let what = format!("a frame of {INSTANCES} bunnies is recorded in {RECORDING} µs");
+            claim(what, format!("{micros:.0} µs"), micros <= RECORDING);
+        }
+    }
     claims
 }
 

@@ -1,13 +1,15 @@
 //! Tables in Markdown, in documents that say where: between `<!-- measured: NAME -->` and
 //! `<!-- end -->`.
 
+use super::gpu_tables::SOFTWARE;
 use super::tables::Table;
-use super::{Report, claims, tables};
+use super::{GpuRun, Report, Run, claims, tables};
 
 const START: &str = "<!-- measured: ";
 const END: &str = "<!-- end -->";
 
-/// What belongs between marks, by name: a table for each of [`tables`], `machine` and `claims`.
+/// What belongs between marks, by name: a table for each of [`tables`], `machine`, `claims`, and `gpu` if
+/// there was one.
 pub fn blocks(report: &Report) -> Vec<(String, String)> {
     let mut blocks: Vec<(String, String)> =
         tables(report).iter().map(|table| (table.name.clone(), markdown(table))).collect();
@@ -15,18 +17,19 @@ pub fn blocks(report: &Report) -> Vec<(String, String)> {
     blocks.push((
         "machine".to_owned(),
         format!(
-            "{}, {} threads, {} kernels, {:.0} GB, {}; Drypoint {} at commit {}, `{}`, {} rounds.\n",
+            "{}, {} threads, {} kernels, {:.0} GB, {}; {}\n",
             machine.processor,
             machine.threads,
             machine.instructions,
             machine.memory,
             machine.system,
-            report.run.version,
-            report.run.commit,
-            report.run.command,
-            report.run.rounds,
+            of_run(&report.run),
         ),
     ));
+    blocks.extend(report.gpu.iter().map(|gpu| {
+        let text = format!("{}; {}\n", device(gpu), of_run(&gpu.run));
+        ("gpu".to_owned(), text)
+    }));
     let claim = |claim: &super::Claim| {
         let (holds, why) =
             if claim.holds { ("holds", "") } else { ("does not hold", &claim.why[..]) };
@@ -35,6 +38,15 @@ pub fn blocks(report: &Report) -> Vec<(String, String)> {
     let lines: Vec<String> = claims(report).iter().map(claim).collect();
     blocks.push(("claims".to_owned(), lines.join("\n") + "\n"));
     blocks
+}
+
+fn of_run(Run { version, commit, command, rounds, .. }: &Run) -> String {
+    format!("Drypoint {version} at commit {commit}, `{command}`, {rounds} rounds.")
+}
+
+/// A GPU, with what has to be said of one that is none.
+pub(super) fn device(gpu: &GpuRun) -> String {
+    if gpu.is_software { format!("{}: {SOFTWARE}", gpu.device) } else { gpu.device.clone() }
 }
 
 fn markdown(table: &Table) -> String {

@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::markdown::device;
 use super::plots::{Plot, plots};
 use super::{Claim, Report, Table, claims, tables};
 
@@ -26,8 +27,6 @@ pub fn page(report: &Report) -> Result<String, String> {
     for mesh in &report.meshes {
         meshes.push((mesh, plots(mesh)?));
     }
-    let run = &report.run;
-    let machine = &report.machine;
     let markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -39,14 +38,7 @@ pub fn page(report: &Report) -> Result<String, String> {
             }
             body {
                 h1 { "Drypoint: measurements" }
-                p {
-                    "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
-                    (run.rounds) " rounds"
-                    @if run.is_quick { " (quick: small meshes and cheap methods only)" }
-                    ". Machine: " (machine.processor) ", " (machine.threads) " threads, "
-                    (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
-                    (machine.system) "."
-                }
+                (provenance(report))
                 p {
                     "Contour edges are those that the exact definition gives: every extractor was compared with \
                      it, from each of its viewpoints, before it was counted or timed, but for the naive loop, \
@@ -79,6 +71,20 @@ pub fn page(report: &Report) -> Result<String, String> {
         }
     };
     Ok(markup.into_string())
+}
+
+fn provenance(Report { machine, run, gpu, .. }: &Report) -> Markup {
+    html! {
+        p {
+            "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
+            (run.rounds) " rounds"
+            @if run.is_quick { " (quick: small meshes and cheap methods only)" }
+            ". Machine: " (machine.processor) ", " (machine.threads) " threads, "
+            (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
+            (machine.system) "."
+            @if let Some(gpu) = gpu { " GPU: " (device(gpu)) "." }
+        }
+    }
 }
 
 fn claimed(claims: &[Claim]) -> Markup {
@@ -160,7 +166,10 @@ mod tests {
                 calibration: None,
                 times: Vec::new(),
                 drawing: Vec::new(),
+                gpu: None,
+                gpu_calibration: Vec::new(),
             }],
+            gpu: None,
         }
     }
 
@@ -188,6 +197,97 @@ mod tests {
         assert_eq!(tables(&summary), tables(&report));
         assert!(!page(&summary).unwrap().contains("<svg"));
         assert!(claims(&report).is_empty());
+    }
+
+    /// With times of a GPU: patches are six times as fast as brute force, which takes twice as long as
+    /// what it reads.
+    fn report_on_gpu(is_software: bool) -> Report {
+        let mut report = report("stanford-bunny");
+        let one = |median| Quartiles { low: median, median, high: median };
+        let time = |name: &str, faster: f64| GpuTime {
+            name: name.to_owned(),
+            millis: one(12.0 / faster),
+            over_brute_force: one(faster),
+            tested: (name != FLOOR).then(GpuTested::default),
+            by_distance: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|millis| millis / faster).to_vec(),
+        };
+        let frame = |name: &str| GpuFrame {
+            name: name.to_owned(),
+            lines: 1234,
+            extraction: one(2.0),
+            drawing: one(1.0),
+            both: one(3.0),
+            over_brute_force: one(1.0),
+            recording: one(55.0),
+        };
+        report.gpu = Some(GpuRun {
+            device: "A GPU".to_owned(),
+            is_software,
+            run: Run { rounds: 9, ..report.run.clone() },
+        });
+        report.meshes[0].gpu = Some(GpuReport {
+            width: 64,
+            has_subgroups: true,
+            times: vec![time(BRUTE_FORCE, 1.0), time(OURS, 6.0), time(FLOOR, 2.0)],
+            frames: vec![frame(BRUTE_FORCE), frame(OURS)],
+        });
+        let costs =
+            Calibration { edge: one(0.0123), patch_test: one(1.5), accepted_patch: one(-9.0) };
+        let (brute_force, patches) = (one(6.0), one(1.0));
+        report.meshes[0].gpu_calibration =
+            vec![GpuCalibration { width: 32, with_subgroups: false, costs, brute_force, patches }];
+        report
+    }
+
+    #[test]
+    fn a_gpu_is_named_and_claims_are_held_against_it() {
+        let report = report_on_gpu(false);
+        let text = page(&report).unwrap();
+        let cells = [
+            "A GPU",
+            "<td>12.0 [12.0, 12.0]</td>",
+            "<td>0.0123 [0.0123, 0.0123] ns</td>",
+            "<td>−9.00 ",
+        ];
+        for text_of in cells.into_iter().chain(["<td>1,234</td>", "<td>off</td>"]) {
+            assert!(text.contains(text_of), "no {text_of} in {text}");
+        }
+        assert!(!text.contains("software"));
+        assert_eq!(text.matches("<svg").count(), 5);
+        let on_gpu = |claim: &&Claim| claim.what.contains("GPU") || claim.what.contains("bunnies");
+        let all = claims(&report);
+        let held: Vec<bool> = all.iter().filter(on_gpu).map(|claim| claim.holds).collect();
+        assert_eq!(held, [true, false, true]);
+    }
+
+    #[test]
+    fn software_is_called_so_in_each_table_and_claims_nothing() {
+        let report = report_on_gpu(true);
+        assert_eq!(claims(&report), claims(&self::report("stanford-bunny")));
+        let of_gpu = |table: &&Table| table.name.contains("-gpu");
+        let tables = tables(&report);
+        assert_eq!(tables.iter().filter(of_gpu).count(), 4);
+        for table in tables.iter().filter(of_gpu) {
+            assert!(table.title.contains("they say nothing about GPUs"), "{}", table.title);
+            assert!(table.head.iter().any(|head| head.contains("(software)")), "{:?}", table.head);
+            assert!(table.rows.iter().all(|row| row.len() == table.head.len()), "{}", table.name);
+        }
+        let block = blocks(&report).into_iter().find(|(name, _)| name == "gpu").unwrap().1;
+        assert!(block.contains("nothing about GPUs") && block.contains("9 rounds"), "{block}");
+    }
+
+    #[test]
+    fn what_was_measured_on_a_gpu_is_put_into_another_report() {
+        let (other, mut on_gpu) = (report("stanford-bunny"), report_on_gpu(false));
+        let both = other.clone().with_gpu_of(&on_gpu);
+        assert_eq!(both, on_gpu);
+        assert_eq!(both.clone().with_gpu_of(&other), other);
+        assert!(!both.is_on_gpu_alone() && !other.is_on_gpu_alone());
+        on_gpu.meshes[0].decompositions.clear();
+        assert!(on_gpu.is_on_gpu_alone());
+        assert_eq!(other.with_gpu_of(&on_gpu), both);
+        on_gpu.meshes[0].name = "another".to_owned();
+        assert_eq!(both.with_gpu_of(&on_gpu).meshes[0].gpu, None);
     }
 
     #[test]

@@ -1,10 +1,11 @@
-//! Plots as SVG, after Figures 4 to 6 of TB24.
+//! Plots as SVG, after Figures 4 to 7 of TB24.
 
 use plotters::prelude::*;
 
 use super::claims::{CONES, MESHLETS, OURS, SNCH, TB24, TWO_LEVELS};
 use super::tables::count;
-use super::{Counts, Decomposition, MeshReport, PATCH_TEST, Sample};
+use super::{Counts, Decomposition, GpuTime, MeshReport, PATCH_TEST, Sample};
+use crate::viewpoints::DISTANCES;
 
 type Failed = DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>;
 
@@ -42,13 +43,13 @@ pub(crate) fn plots(mesh: &MeshReport) -> Result<Vec<Plot>, String> {
         };
         mesh.decompositions.iter().map(share).collect()
     };
-    let spiral = |value: &dyn Fn(&Counts) -> Vec<f64>| -> Vec<(String, Vec<f64>)> {
-        let line = |each: &Decomposition| (each.name.clone(), value(&each.tested.spiral));
+    let spiral = |value: &dyn Fn(&Counts) -> Vec<f64>| -> Vec<Line> {
+        let line = |each: &Decomposition| (each.name.clone(), numbered(value(&each.tested.spiral)));
         let drawn = ALONG.iter().filter_map(|name| mesh.decomposition(name));
         drawn.map(line).collect()
     };
     let mut edges_along = spiral(&|counts| numbers(&counts.edges));
-    edges_along.push(("contour edges".to_owned(), numbers(&mesh.contours.spiral)));
+    edges_along.push(("contour edges".to_owned(), numbered(numbers(&mesh.contours.spiral))));
     let cost = |counts: &Counts| -> Vec<f64> {
         let bounds = counts.bounds.counts.iter();
         let both = bounds.zip(&counts.edges.counts);
@@ -63,16 +64,21 @@ pub(crate) fn plots(mesh: &MeshReport) -> Result<Vec<Plot>, String> {
         (
             "Edges tested along a spiral of viewpoints from pole to pole, ten half-lengths away, and the \
              contour edges among them (after TB24, Figure 5).",
-            lines("edges", &edges_along),
+            lines(["viewpoint", "edges"], &edges_along),
         ),
         (
             "Cost along the same spiral: 1.363 for each bound tested, and 1 for each edge (after TB24, \
              Figure 6).",
-            lines("cost", &spiral(&cost)),
+            lines(["viewpoint", "cost"], &spiral(&cost)),
         ),
         (
             "Edges tested, per cent of all, from viewpoints on, in and beside the surface.",
             boxes("edges tested, %", &shares(&|each| each.tested.near.edges.clone())),
+        ),
+        (
+            "Time of extraction on the GPU for the 42 instances of each distance, in half-lengths (after TB24, \
+             Figure 7).",
+            lines(["distance", "ms"], &by_distance(mesh)),
         ),
     ];
     let finish = |(caption, svg): (&str, Result<Option<String>, Failed>)| match svg {
@@ -80,6 +86,24 @@ pub(crate) fn plots(mesh: &MeshReport) -> Result<Vec<Plot>, String> {
         Err(error) => Some(Err(error.to_string())),
     };
     drawn.into_iter().filter_map(finish).collect()
+}
+
+/// A name, and points.
+type Line = (String, Vec<(f64, f64)>);
+
+/// With the numbers of viewpoints.
+fn numbered(values: Vec<f64>) -> Vec<(f64, f64)> {
+    values.into_iter().enumerate().map(|(number, value)| (number as f64, value)).collect()
+}
+
+/// Times on the GPU.
+fn by_distance(mesh: &MeshReport) -> Vec<Line> {
+    let times = mesh.gpu.iter().flat_map(|gpu| &gpu.times);
+    let line = |time: &GpuTime| {
+        let points = DISTANCES.into_iter().zip(time.by_distance.iter().copied());
+        (time.name.clone(), points.collect())
+    };
+    times.map(line).collect()
 }
 
 fn numbers(sample: &Sample) -> Vec<f64> {
@@ -131,10 +155,11 @@ fn boxes(axis: &str, samples: &[(String, Vec<f64>)]) -> Result<Option<String>, F
     Ok(Some(svg))
 }
 
-/// One line for each, over the numbers of viewpoints; none without numbers.
-fn lines(axis: &str, series: &[(String, Vec<f64>)]) -> Result<Option<String>, Failed> {
-    let most = series.iter().flat_map(|(_, values)| values).copied().fold(0.0, f64::max);
-    let last = series.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+/// Each in its color; none without points.
+fn lines(axes: [&str; 2], series: &[Line]) -> Result<Option<String>, Failed> {
+    let points = || series.iter().flat_map(|(_, points)| points);
+    let most = points().map(|(_, y)| *y).fold(0.0, f64::max);
+    let last = points().map(|(x, _)| *x).fold(0.0, f64::max);
     if most == 0.0 {
         return Ok(None);
     }
@@ -145,18 +170,21 @@ fn lines(axis: &str, series: &[(String, Vec<f64>)]) -> Result<Option<String>, Fa
             .margin(8)
             .x_label_area_size(38)
             .y_label_area_size(64)
-            .build_cartesian_2d(0..last, 0.0..1.75 * most)?;
+            .build_cartesian_2d(0.0..last, 0.0..1.75 * most)?;
         chart
             .configure_mesh()
-            .x_desc("viewpoint")
-            .y_desc(axis)
-            .y_label_formatter(&|number| count(*number))
+            .x_desc(axes[0])
+            .y_desc(axes[1])
+            .x_label_formatter(&|number| count(*number))
+            .y_label_formatter(&|number| {
+                if most < 10.0 { format!("{number:.2}") } else { count(*number) }
+            })
             .light_line_style(WHITE)
             .draw()?;
-        for (index, (name, values)) in series.iter().enumerate() {
+        for (index, (name, points)) in series.iter().enumerate() {
             let color = COLORS[index % COLORS.len()];
             let style = color.stroke_width(1);
-            let points = values.iter().copied().enumerate();
+            let points = points.iter().copied();
             let swatch =
                 move |(x, y)| Rectangle::new([(x, y - 4), (x + 14, y + 4)], color.filled());
             chart.draw_series(LineSeries::new(points, style))?.label(name).legend(swatch);

@@ -2,7 +2,7 @@
 
 use super::claims::{FAST, OURS};
 use super::paper::FIGURES;
-use super::{Calibration, Decomposition, MeshReport, Partition, Quartiles, Report};
+use super::{Calibration, Decomposition, MeshReport, Partition, Quartiles, Report, gpu_tables};
 
 /// A table of text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,9 @@ pub struct Table {
 
 /// All tables that have a row.
 pub fn tables(report: &Report) -> Vec<Table> {
-    let tables = [headline(report)].into_iter().chain(report.meshes.iter().flat_map(of_mesh));
+    let of_meshes =
+        report.meshes.iter().flat_map(|mesh| of_mesh(mesh).chain(gpu_tables::tables(report, mesh)));
+    let tables = [headline(report)].into_iter().chain(of_meshes);
     tables.filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -220,10 +222,6 @@ fn calibration(calibration: &Calibration) -> Vec<String> {
 }
 
 fn times(mesh: &MeshReport) -> Vec<Vec<String>> {
-    let ratio = |Quartiles { low, median, high }: Quartiles| match median {
-        ..10.0 => format!("{median:.2} [{low:.2}, {high:.2}]"),
-        _ => format!("{median:.1} [{low:.1}, {high:.1}]"),
-    };
     let row = |time: &super::Time| {
         vec![
             time.name.clone(),
@@ -233,6 +231,14 @@ fn times(mesh: &MeshReport) -> Vec<Vec<String>> {
         ]
     };
     mesh.times.iter().map(row).collect()
+}
+
+/// How many times as fast.
+pub(super) fn ratio(Quartiles { low, median, high }: Quartiles) -> String {
+    match median {
+        ..10.0 => format!("{median:.2} [{low:.2}, {high:.2}]"),
+        _ => format!("{median:.1} [{low:.1}, {high:.1}]"),
+    }
 }
 
 fn three_digits(Quartiles { low, median, high }: &Quartiles) -> String {

@@ -269,14 +269,11 @@ fn in_turn(contenders: &mut [Contender<'_>], viewpoints: &[Viewpoint], rounds: u
         .map(|(_, own)| own)
         .min_by(|a, b| median(a).total_cmp(&median(b)))
         .unwrap_or(&times[0]);
-    let over = |others: &[f64], own: &[f64]| {
-        Quartiles::of(others.iter().zip(own).map(|(other, own)| other / own))
-    };
     let time = |(contender, own): (&Contender<'_>, &Vec<f64>)| Time {
         name: contender.name.clone(),
         micros: median(own),
-        speed_up: over(&times[0], own),
-        over_brute_force: over(best, own),
+        speed_up: Quartiles::of_ratios(&times[0], own),
+        over_brute_force: Quartiles::of_ratios(best, own),
         is_brute_force: contender.is_brute_force,
     };
     contenders.iter().zip(&times).map(time).collect()

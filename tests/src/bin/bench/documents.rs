@@ -5,13 +5,17 @@ use std::path::{Path, PathBuf};
 
 use drypoint_tests::report::{DOCUMENTS, Report, SUMMARY, blocks, marks, replace_blocks};
 
-use crate::{Options, name, write};
+use crate::{Options, Section, name, read, write};
 
 /// Whether this is the repository, and a run on `files` can fill in all of its tables.
 pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> Result<(), String> {
     let documents = documents(repository)?;
-    if options.quick || !options.only.is_empty() {
-        return Err("--docs takes a whole run: no --quick and no --only".to_owned());
+    let on_gpu = [Section::Gpu, Section::GpuCalibration];
+    let is_on_gpu_alone = on_gpu.iter().all(|section| options.only.contains(section))
+        && options.only.iter().all(|section| on_gpu.contains(section));
+    if options.quick || !(options.only.is_empty() || is_on_gpu_alone) {
+        let sections = "no --only but gpu and gpu-calibration, both of them";
+        return Err(format!("--docs takes a whole run: no --quick, and {sections}"));
     }
     let meshes: Vec<String> = files.iter().map(|path| name(path)).collect();
     for (path, text) in &documents {
@@ -19,7 +23,9 @@ pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> 
             let is_of = |mesh: &String| {
                 mark.strip_prefix(&mesh[..]).is_some_and(|table| table.starts_with('-'))
             };
-            !mark.contains('-') || meshes.iter().any(is_of)
+            // The rest stays as it is.
+            let is_kept = is_on_gpu_alone && !mark.contains("-gpu");
+            is_kept || !mark.contains('-') || meshes.iter().any(is_of)
         };
         if let Some(mark) = marks(text).find(|mark| !is_filled(mark)) {
             return Err(format!(
@@ -31,8 +37,15 @@ pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> 
     Ok(())
 }
 
-/// Writes the summary, and the marked tables.
+/// Writes the summary, and the marked tables. What was measured on a GPU comes from another machine than
+/// the rest where only one of both was measured now, and the other is kept.
 pub(crate) fn update(repository: &Path, report: Report) -> Result<(), String> {
+    let kept = read(&repository.join(SUMMARY));
+    let report = match (report.is_on_gpu_alone(), kept) {
+        (true, kept) => kept?.with_gpu_of(&report),
+        (false, Ok(kept)) if report.gpu.is_none() => report.with_gpu_of(&kept),
+        (false, _) => report,
+    };
     let report = report.summary();
     let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
     let blocks = blocks(&report);

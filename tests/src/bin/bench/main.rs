@@ -7,6 +7,7 @@ mod decompositions;
 mod documents;
 mod drawing;
 mod floor;
+mod gpu;
 mod kept;
 mod machine;
 mod measure;
@@ -44,11 +45,12 @@ struct Options {
     #[arg(long)]
     fresh: bool,
     /// Also write what was measured to docs/measurements.json of this repository, and into the
-    /// marked tables of its documents, all of whose meshes must be given
+    /// marked tables of its documents, all of whose meshes must be given. With --only gpu and --only
+    /// gpu-calibration, and for the report of such a run, the rest stays as it is
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
     /// Measure nothing: make the page and the tables from a report.json, or from the repository's
-    /// docs/measurements.json, which has no plots
+    /// docs/measurements.json, which has few plots
     #[arg(long, value_name = "REPORT", conflicts_with_all = ["quick", "rounds", "only", "fresh", "files"])]
     from: Option<PathBuf>,
     /// Mesh files; those that are not found here are looked for in the folder of DRYPOINT_MODELS
@@ -69,6 +71,10 @@ enum Section {
     Times,
     /// A drawing, stage by stage
     Drawing,
+    /// Extraction on a GPU, and frames
+    Gpu,
+    /// What the cost model is made of on a GPU, by the width of workgroups
+    GpuCalibration,
 }
 
 impl Options {
@@ -107,19 +113,22 @@ fn run(options: &Options) -> Result<(), String> {
         documents::check(repository, options, &files)?;
     }
     let kept = Kept::new(options)?;
+    let gpu = gpu::device(options)?;
     let mut meshes = Vec::new();
     for path in &files {
         let model = io::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        meshes.push(measure::mesh(&name(path), &model.mesh, options, &kept)?);
+        meshes.push(measure::mesh(&name(path), &model.mesh, options, (&kept, gpu.as_ref()))?);
     }
     if files.is_empty() {
         for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
             let mesh = shapes::by_name(name, SHAPE_FACES).ok_or(format!("no shape {name}"))?;
-            meshes.push(measure::mesh(name, &mesh, options, &kept)?);
+            meshes.push(measure::mesh(name, &mesh, options, (&kept, gpu.as_ref()))?);
         }
     }
     kept.finish();
-    finish(options, &Report { machine: machine::machine(), run: machine::run(options), meshes })
+    let run = machine::run(options);
+    let gpu = gpu.map(|gpu| gpu::run(&gpu, run.clone()));
+    finish(options, &Report { machine: machine::machine(), run, meshes, gpu })
 }
 
 /// A report of an earlier run.

@@ -3,16 +3,17 @@
 use drypoint_fusion::mesh_hash;
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_tests::report::MeshReport;
+use drypoint_wgpu::Gpu;
 
 use crate::decompositions::Subject;
 use crate::kept::Kept;
-use crate::{Options, Section, calibrate, contenders, drawing};
+use crate::{Options, Section, calibrate, contenders, drawing, gpu as on_gpu};
 
 pub(crate) fn mesh(
     name: &str,
     mesh: &Mesh,
     options: &Options,
-    kept: &Kept,
+    (kept, gpu): (&Kept, Option<&Gpu>),
 ) -> Result<MeshReport, String> {
     let fail = |why: String| format!("{name}: {why}");
     let adjacency = MeshAdjacency::new(mesh);
@@ -45,6 +46,22 @@ pub(crate) fn mesh(
         drawing: match timed(Section::Drawing, "drawing") {
             Some(what) => {
                 kept.or_measure(&what, &key, || drawing::measure(mesh, &adjacency)).map_err(fail)?
+            }
+            None => Vec::new(),
+        },
+        gpu: match gpu.zip(timed(Section::Gpu, "GPU")) {
+            Some((gpu, what)) => {
+                let key = format!("{key} {} {}", options.quick, gpu.name());
+                let measure = || on_gpu::measure(gpu, mesh, &adjacency, options);
+                kept.or_measure(&what, &key, measure).map_err(fail)?
+            }
+            None => None,
+        },
+        gpu_calibration: match gpu.zip(timed(Section::GpuCalibration, "GPU calibration")) {
+            Some((gpu, what)) => {
+                let key = format!("{key} {}", gpu.name());
+                let measure = || on_gpu::calibrate::measure(gpu, mesh, &adjacency, rounds);
+                kept.or_measure(&what, &key, measure).map_err(fail)?
             }
             None => Vec::new(),
         },
