@@ -11,8 +11,8 @@ struct Totals {
     super_patches_accepted: vec2u,
 }
 
-@group(1) @binding(4) var<storage, read_write> totals: Totals;
-@group(1) @binding(5) var<storage, read_write> arguments: Arguments;
+@group(1) @binding(2) var<storage, read_write> totals: Totals;
+@group(1) @binding(3) var<storage, read_write> arguments: Arguments;
 
 fn add(total: vec2u, count: u32) -> vec2u {
     let low = total.x + count;

@@ -1,4 +1,4 @@
-// What all extraction shaders read and write, but for the model itself.
+// What a dispatch has to do, and what is counted in it.
 
 // What one dispatch has to do. Twin of src/layout.rs, Work.
 struct Work {
@@ -28,34 +28,5 @@ struct Counters {
     super_patches_accepted: atomic<u32>,
 }
 
-// Vertices of an edge, and what its id is in the mesh. Twin of src/edge.rs, EdgeEnds.
-struct EdgeEnds {
-    from_vertex: u32,
-    to_vertex: u32,
-    edge: u32,
-}
-
-@group(0) @binding(0) var<storage, read> planes: array<EdgePlanes>;
-@group(0) @binding(1) var<storage, read> ends: array<EdgeEnds>;
-
 @group(1) @binding(0) var<uniform> work: Work;
-// The viewpoint of each placement, in the frame of its part.
-@group(1) @binding(1) var<storage, read> viewpoints: array<vec4f>;
-@group(1) @binding(2) var<storage, read_write> counters: Counters;
-@group(1) @binding(3) var<storage, read_write> segments: array<Segment>;
-
-// Workgroups are numbered through, row by row: there may be more than one dimension holds.
-fn workgroup_number(workgroup: vec3u, workgroups: vec3u) -> u32 {
-    return workgroup.x + workgroup.y * workgroups.x;
-}
-
-fn blocks_per_instance() -> u32 {
-    return (work.item_count + work.items_per_workgroup - 1u) / work.items_per_workgroup;
-}
-
-fn write_segment(index: u32, edge: u32, placement: u32) {
-    if index < work.segment_capacity {
-        let found = ends[edge];
-        segments[index] = Segment(found.from_vertex, found.to_vertex, placement, found.edge);
-    }
-}
+@group(1) @binding(1) var<storage, read_write> counters: Counters;

@@ -20,6 +20,7 @@ macro_rules! both {
                 include_str!("../shared/contour.wgsl"),
                 include_str!("../shared/segment.wgsl"),
                 include_str!("../shared/work.wgsl"),
+                include_str!("../shared/edges.wgsl"),
                 include_str!("../shared/append_workgroup.wgsl"),
                 $(include_str!($file)),+
             ),
@@ -27,6 +28,7 @@ macro_rules! both {
                 include_str!("../shared/contour.wgsl"),
                 include_str!("../shared/segment.wgsl"),
                 include_str!("../shared/work.wgsl"),
+                include_str!("../shared/edges.wgsl"),
                 include_str!("../shared/append_subgroup.wgsl"),
                 $(include_str!($file)),+
             ),
@@ -45,7 +47,6 @@ pub const SUPER_PATCHES: [&str; 2] = both!("../shared/survivors.wgsl", "../super
 
 /// Entry point `tally`.
 pub const TALLY: &str = concat!(
-    include_str!("../shared/contour.wgsl"),
     include_str!("../shared/segment.wgsl"),
     include_str!("../shared/work.wgsl"),
     include_str!("../tally.wgsl"),

@@ -5,6 +5,7 @@ use glam::Vec4;
 use wgpu::BufferUsages;
 
 use crate::Error;
+use crate::bindings::bind;
 use crate::device::{buffer, checked};
 use crate::extractor::Extractor;
 use crate::model::Model;
@@ -99,27 +100,22 @@ impl Contours {
         };
         let work = || part(layout.work, size_of::<Work>() as u64);
         let viewpoints = part(0, u64::from(capacity.placements.max(1)) * size_of::<Vec4>() as u64);
-        let bind = |what,
-                    layout: &wgpu::BindGroupLayout,
-                    resources: Vec<(u32, wgpu::BindingResource<'_>)>| {
-            let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-            let entries: Vec<_> = resources.into_iter().map(entry).collect();
-            let descriptor =
-                wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
-            checked(device, what, || device.create_bind_group(&descriptor))
-        };
         let [counted, added, arguing, found] =
             [&counters, &totals, &arguments, &segments].map(wgpu::Buffer::as_entire_binding);
+        let extracting = vec![work(), counted.clone(), viewpoints, found];
+        let tallying = vec![work(), counted, added, arguing];
         Ok(Self {
             work_bindings: bind(
+                device,
                 "the bindings of extraction",
                 extractor.work_layout(),
-                vec![(0, work()), (1, viewpoints), (2, counted.clone()), (3, found)],
+                extracting,
             )?,
             tally_bindings: bind(
+                device,
                 "the bindings of totals",
                 extractor.tally_layout(),
-                vec![(0, work()), (2, counted), (4, added), (5, arguing)],
+                tallying,
             )?,
             model: model.clone(),
             capacity,

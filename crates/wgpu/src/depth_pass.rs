@@ -6,10 +6,13 @@ use glam::Mat4;
 use wgpu::BufferUsages;
 
 use crate::Error;
+use crate::bindings::{READ, bind, layout, uniform};
 use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
-use crate::raster::{DepthOrder, Drawing, STORAGE, bind, layout, uniform};
+use crate::raster::{DepthOrder, Drawing};
 use crate::staging::Staging;
+
+const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
 
 /// Draws [`Surface`]s into a depth texture, for renderers that have no depth of their own.
 #[derive(Debug)]
@@ -52,8 +55,8 @@ impl DepthPass {
         format: wgpu::TextureFormat,
         order: DepthOrder,
     ) -> (wgpu::BindGroupLayout, wgpu::BindGroupLayout, wgpu::RenderPipeline) {
-        let view_layout = layout(device, "a view", &[uniform::<Mat4>(false)]);
-        let surface_layout = layout(device, "a surface", &[uniform::<Part>(true), STORAGE]);
+        let view_layout = layout(device, "a view", DRAWING, &[uniform::<Mat4>(false)]);
+        let surface_layout = layout(device, "a surface", DRAWING, &[uniform::<Part>(true), READ]);
         let attribute = wgpu::VertexAttribute {
             format: wgpu::VertexFormat::Float32x3,
             offset: 0,

@@ -5,6 +5,7 @@ use drypoint_shaders::{
 };
 
 use crate::Error;
+use crate::bindings::{READ, WRITE, layout, uniform};
 use crate::contours::Contours;
 use crate::device::checked;
 use crate::plan::{PlanLimits, Stage};
@@ -73,10 +74,14 @@ impl Extractor {
         let has_subgroups = device.features().contains(wgpu::Features::SUBGROUP);
         let subgroups =
             if options.subgroups && has_subgroups { Subgroups::With } else { Subgroups::Without };
-        let model_layout = layout(device, &[READ; 4]);
-        let work_layout = layout(device, &[WORK, READ, WRITE, WRITE]);
-        let tally_layout = numbered(device, &[(0, WORK), (2, WRITE), (4, WRITE), (5, WRITE)]);
-        let placing_layout = layout(device, &[READ, READ, READ, READ, WRITE]);
+        let layout = |label, types: &[wgpu::BindingType]| {
+            layout(device, label, wgpu::ShaderStages::COMPUTE, types)
+        };
+        let work = uniform::<Work>(true);
+        let model_layout = layout("a model", &[READ; 4]);
+        let work_layout = layout("extraction", &[work, WRITE, READ, WRITE]);
+        let tally_layout = layout("totals", &[work, WRITE, WRITE, WRITE]);
+        let placing_layout = layout("placed segments", &[READ, READ, READ, READ, WRITE]);
         let maker = Maker { device };
         let of_extraction = [Some(&model_layout), Some(&work_layout)];
         let extraction = |sources: [&str; 2], entry: &str| {
@@ -194,39 +199,4 @@ impl Maker<'_> {
             cache: None,
         })
     }
-}
-
-const READ: wgpu::BindingType = storage(true);
-const WRITE: wgpu::BindingType = storage(false);
-const WORK: wgpu::BindingType = wgpu::BindingType::Buffer {
-    ty: wgpu::BufferBindingType::Uniform,
-    has_dynamic_offset: true,
-    min_binding_size: wgpu::BufferSize::new(size_of::<Work>() as u64),
-};
-
-const fn storage(read_only: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Storage { read_only },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    }
-}
-
-fn layout(device: &wgpu::Device, types: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
-    let types: Vec<_> = (0..).zip(types.iter().copied()).collect();
-    numbered(device, &types)
-}
-
-fn numbered(device: &wgpu::Device, types: &[(u32, wgpu::BindingType)]) -> wgpu::BindGroupLayout {
-    let entry = |&(binding, ty): &(u32, wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    };
-    let entries: Vec<_> = types.iter().map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("drypoint"),
-        entries: &entries,
-    })
 }

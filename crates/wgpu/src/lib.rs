@@ -54,6 +54,7 @@
 //! # }
 //! ```
 
+mod bindings;
 mod contours;
 mod depth_pass;
 mod device;

@@ -5,10 +5,13 @@ use glam::{Mat4, Vec2, Vec4};
 use wgpu::BufferUsages;
 
 use crate::Error;
+use crate::bindings::{READ, bind, layout, texture, uniform};
 use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
-use crate::raster::{DepthOrder, Drawing, STORAGE, bind, layout, texture, uniform};
+use crate::raster::{DepthOrder, Drawing};
 use crate::staging::Staging;
+
+const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
 
 /// How lines look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,12 +72,14 @@ impl LinePass {
         let size = size_of::<Stroke>() as u64;
         let stroke = buffer(device, "a line style", size, usage)?;
         checked(device, "the shaders of lines", || {
-            let stroke_layout = layout(device, "a line style", &[uniform::<Stroke>(false)]);
+            let stroke_layout =
+                layout(device, "a line style", DRAWING, &[uniform::<Stroke>(false)]);
             let depth = texture(wgpu::TextureSampleType::Depth);
-            let target_layout = layout(device, "a line target", &[uniform::<Raster>(false), depth]);
-            let lines_layout = layout(device, "lines", &[STORAGE; 3]);
+            let target_layout =
+                layout(device, "a line target", DRAWING, &[uniform::<Raster>(false), depth]);
+            let lines_layout = layout(device, "lines", DRAWING, &[READ; 3]);
             let coverage = texture(wgpu::TextureSampleType::Float { filterable: false });
-            let coverage_layout = layout(device, "the coverage of lines", &[coverage]);
+            let coverage_layout = layout(device, "the coverage of lines", DRAWING, &[coverage]);
             let layouts = [Some(&stroke_layout), Some(&target_layout), Some(&lines_layout)];
             let covering = covering(&layouts).pipeline(device);
             let layouts = [Some(&stroke_layout), Some(&coverage_layout)];

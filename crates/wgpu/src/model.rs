@@ -9,7 +9,8 @@ use glam::Vec3;
 use wgpu::BufferUsages;
 
 use crate::Error;
-use crate::device::{checked, filled, largest_storage};
+use crate::bindings::bind;
+use crate::device::{filled, largest_storage};
 use crate::extractor::Extractor;
 
 /// Edges, planes and patches of a model in GPU memory: 44 bytes an edge, 12 a vertex and 48 a patch.
@@ -76,7 +77,7 @@ impl Model {
         let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
         let pages = content.pages(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
         let upload = |page: Page| {
-            let bindings = bind(extractor, content, &page)?;
+            let bindings = upload_page(extractor, content, &page)?;
             Ok(UploadedPage { page, bindings })
         };
         let pages = pages.into_iter().map(upload).collect::<Result<_, _>>()?;
@@ -119,7 +120,11 @@ impl Model {
     }
 }
 
-fn bind(extractor: &Extractor, content: &Content, page: &Page) -> Result<wgpu::BindGroup, Error> {
+fn upload_page(
+    extractor: &Extractor,
+    content: &Content,
+    page: &Page,
+) -> Result<wgpu::BindGroup, Error> {
     let device = extractor.device();
     let edges = page.edges.start as usize..page.edges.end as usize;
     let usage = BufferUsages::STORAGE;
@@ -131,15 +136,8 @@ fn bind(extractor: &Extractor, content: &Content, page: &Page) -> Result<wgpu::B
         filled(device, "the patches of a model", &at_least_one(&page.patches), usage)?,
         filled(device, "the super-patches of a model", &at_least_one(&page.super_patches), usage)?,
     ];
-    let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding);
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-    let descriptor = wgpu::BindGroupDescriptor {
-        label: Some("drypoint model"),
-        layout: extractor.model_layout(),
-        entries: &entries,
-    };
-    checked(device, "the bindings of a model", || device.create_bind_group(&descriptor))
+    let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
+    bind(device, "the bindings of a model", extractor.model_layout(), resources)
 }
 
 /// A binding may not be smaller than an element.

@@ -3,8 +3,9 @@
 use drypoint_shaders::{Arguments, PlacedSegment};
 
 use crate::Error;
+use crate::bindings::bind;
 use crate::contours::{Contours, read};
-use crate::device::{buffer, checked};
+use crate::device::buffer;
 use crate::extractor::Extractor;
 
 /// The segments of [`Contours`] as positions in the scene, for callers that draw lines of their own.
@@ -25,19 +26,15 @@ impl PlacedContours {
             wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
         let size = u64::from(contours.capacity().segments) * size_of::<PlacedSegment>() as u64;
         let segments = buffer(device, "placed segments", size.max(32), usage)?;
-        let resources = [
+        let resources = vec![
             contours.segments().as_entire_binding(),
             contours.arguments().as_entire_binding(),
             contours.model().positions().as_entire_binding(),
             wgpu::BindingResource::Buffer(contours.transforms()),
             segments.as_entire_binding(),
         ];
-        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-        let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-        let what = "the bindings of placed segments";
-        let layout = extractor.placing_layout();
-        let descriptor = wgpu::BindGroupDescriptor { label: Some(what), layout, entries: &entries };
-        let bindings = checked(device, what, || device.create_bind_group(&descriptor))?;
+        let label = "the bindings of placed segments";
+        let bindings = bind(device, label, extractor.placing_layout(), resources)?;
         Ok(Self { segments, bindings })
     }
 

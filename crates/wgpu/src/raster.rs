@@ -1,8 +1,5 @@
 //! What the pipelines that draw have in common.
 
-use crate::Error;
-use crate::device::checked;
-
 /// Which way depths run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum DepthOrder {
@@ -36,63 +33,6 @@ impl DepthOrder {
             Self::Reversed => -1.0,
         }
     }
-}
-
-/// A buffer that one binding holds: bytes, and whether an offset into it is given with each call.
-pub(crate) const fn uniform<T>(has_dynamic_offset: bool) -> wgpu::BindingType {
-    wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset,
-        min_binding_size: wgpu::BufferSize::new(size_of::<T>() as u64),
-    }
-}
-
-/// Storage that shaders read.
-pub(crate) const STORAGE: wgpu::BindingType = wgpu::BindingType::Buffer {
-    ty: wgpu::BufferBindingType::Storage { read_only: true },
-    has_dynamic_offset: false,
-    min_binding_size: None,
-};
-
-/// A texture of one sample a pixel, whose texels are read as they are.
-pub(crate) const fn texture(sample_type: wgpu::TextureSampleType) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    }
-}
-
-/// A layout of bindings from 0 on, for vertex and fragment shaders.
-pub(crate) fn layout(
-    device: &wgpu::Device,
-    label: &'static str,
-    types: &[wgpu::BindingType],
-) -> wgpu::BindGroupLayout {
-    let entry = |(binding, &ty)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty,
-        count: None,
-    };
-    let entries: Vec<_> = (0..).zip(types).map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &entries,
-    })
-}
-
-/// Bindings from 0 on.
-pub(crate) fn bind(
-    device: &wgpu::Device,
-    label: &'static str,
-    layout: &wgpu::BindGroupLayout,
-    resources: Vec<wgpu::BindingResource<'_>>,
-) -> Result<wgpu::BindGroup, Error> {
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
-    let descriptor = wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
-    checked(device, label, || device.create_bind_group(&descriptor))
 }
 
 /// A pipeline from one source, which draws triangles on both sides.

@@ -84,7 +84,8 @@ impl<'a> Seen<'a> {
         let in_frame = frame.viewpoint(*viewpoint);
         let is_sure = |edge: &&EdgeId| {
             let wing = self.adjacency.wing(**edge);
-            !EdgePlanes::is_doubtful(self.mesh.positions(), &wing, frame, in_frame)
+            let planes = EdgePlanes::in_f64(self.mesh.positions(), &wing, frame);
+            !EdgePlanes::is_doubtful(&planes, in_frame)
         };
         let sure = differing.iter().filter(is_sure).count();
         if sure > 0 {
