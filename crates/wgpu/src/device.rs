@@ -121,7 +121,7 @@ fn is_lost(device: &wgpu::Device) -> bool {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("a sign of life"),
         size: 4,
-        usage: wgpu::BufferUsages::MAP_WRITE,
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: true,
     });
     let is_lost = buffer.get_mapped_range_mut(..).is_err();
