@@ -40,6 +40,11 @@ impl Gpu {
         flags: wgpu::InstanceFlags,
         adjust: &dyn Fn(&mut wgpu::Limits),
     ) -> Result<Self, Error> {
+        // Otherwise wgpu panics.
+        if wgpu::Instance::enabled_backend_features().is_empty() {
+            let reason = "no backend was built in (feature native)".to_owned();
+            return Err(Error::NoAdapter { reason });
+        }
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             flags,
             ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
