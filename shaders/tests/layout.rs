@@ -4,9 +4,9 @@ use std::mem::offset_of;
 
 use drypoint_bounds::{DoubleCone, MIN_CLEARANCE};
 use drypoint_shaders::{
-    Arguments, BRUTE_FORCE, CONTOUR, Counters, EdgeEnds, EdgePlanes, Group, PATCHES, POSITIONS,
-    PlacedSegment, ROW, SEGMENTS_PER_WORKGROUP, SUPER_PATCHES, Segment, TALLY, Totals, Transform,
-    WIDTHS, Work, prelude,
+    Arguments, BRUTE_FORCE, CONTOUR, Counters, DEPTH, EdgeEnds, EdgePlanes, Group, INK, LINES,
+    PATCHES, POSITIONS, Part, PlacedSegment, ROW, Raster, SEGMENTS_PER_WORKGROUP, SUPER_PATCHES,
+    Segment, Stroke, TALLY, Totals, Transform, WIDTHS, Work, prelude,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -31,7 +31,7 @@ fn plain() -> Vec<String> {
     let extraction = widths.flat_map(|width| {
         [BRUTE_FORCE[0], PATCHES[0], SUPER_PATCHES[0]].map(|source| prelude(width) + source)
     });
-    extraction.chain([CONTOUR, TALLY, POSITIONS].map(str::to_owned)).collect()
+    extraction.chain([CONTOUR, TALLY, POSITIONS, DEPTH, LINES, INK].map(str::to_owned)).collect()
 }
 
 #[test]
@@ -140,6 +140,21 @@ fn structs_have_the_same_layout_on_both_sides() {
     check!(TALLY, Arguments { line_list, quads, workgroups });
     check!(POSITIONS, PlacedSegment { from_position, placement, to_position, edge });
     check!(POSITIONS, Transform { x, y, z });
+    check!(DEPTH, Part { part, part_count });
+    check!(LINES, Raster { size, depth_sign, depth_step });
+}
+
+/// A uniform ends with padding, which WGSL does not name.
+#[test]
+fn a_stroke_has_the_same_layout_but_for_its_padding() {
+    let (members, size) = layout(LINES, "Stroke");
+    let expected = [
+        ("scene_to_clip".to_owned(), offset_of!(Stroke, scene_to_clip)),
+        ("color".to_owned(), offset_of!(Stroke, color)),
+        ("half_width".to_owned(), offset_of!(Stroke, half_width)),
+    ];
+    assert_eq!(members, expected);
+    assert_eq!(size, size_of::<Stroke>());
 }
 
 #[test]

@@ -40,6 +40,11 @@ impl Gpu {
         flags: wgpu::InstanceFlags,
         adjust: &dyn Fn(&mut wgpu::Limits),
     ) -> Result<Self, Error> {
+        // Otherwise wgpu panics.
+        if wgpu::Instance::enabled_backend_features().is_empty() {
+            let reason = "no backend was built in (feature native)".to_owned();
+            return Err(Error::NoAdapter { reason });
+        }
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             flags,
             ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
@@ -121,7 +126,7 @@ fn is_lost(device: &wgpu::Device) -> bool {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("a sign of life"),
         size: 4,
-        usage: wgpu::BufferUsages::MAP_WRITE,
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: true,
     });
     let is_lost = buffer.get_mapped_range_mut(..).is_err();
