@@ -58,3 +58,13 @@ fn bad_options_say_what_is_wrong() {
     bench.fail("patches corner.obj -o nowhere/a.patches", &["nowhere/a.patches"]);
     bench.fail("paint corner.obj", &["paint"]);
 }
+
+#[cfg(not(feature = "wgpu"))]
+#[test]
+fn without_gpu_code_a_gpu_is_refused() {
+    let bench = Bench::new();
+    bench.write("corner.obj", CORNER);
+    for args in ["draw corner.obj -o a.png", "extract corner.obj --eye 1,2,3"] {
+        bench.fail(&format!("{args} --method wgpu"), &["--method wgpu", "feature wgpu"]);
+    }
+}
