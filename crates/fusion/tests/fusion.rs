@@ -277,7 +277,6 @@ fn no_patch_is_in_vain() {
         in_blocks,
         FusionParams { levels: Levels::Two, ..in_blocks },
         FusionParams { cost: CostModel::MESH_SHADER, ..FusionParams::DEFAULT },
-        FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT },
     ] {
         let set = fuse_silently(&shapes::bumpy_sphere(3_000), EdgeFilter::Convex, &params);
         // Below a super-patch, three in ten are tested.
