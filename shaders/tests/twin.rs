@@ -1,5 +1,9 @@
 //! The Rust twins of the shaders' tests, against the exact definition: what f32 may get wrong is within
 //! the stated margin, and nothing beyond it is culled.
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "coordinates are rounded on purpose, and meshes small"
+)]
 
 use std::ops::ControlFlow;
 

@@ -1,4 +1,9 @@
 //! Extraction with wgpu on every shape and model, from the 252 views and from directions.
+#![allow(
+    clippy::print_stdout,
+    reason = "what is left to f32 is to be seen, as `--nocapture` shows it"
+)]
+#![allow(clippy::cast_possible_truncation, reason = "instances and segments are few")]
 
 #[path = "../../crates/wgpu/tests/support/mod.rs"]
 mod support;

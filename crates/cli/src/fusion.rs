@@ -92,12 +92,8 @@ pub(crate) enum Runtime {
     CpuScalar,
     /// A processor, 16 edges at a time
     CpuSimd,
-    /// A compute shader, workgroups of 32
-    #[value(name = "gpu-32")]
-    Gpu32,
-    /// A compute shader, workgroups of 64
-    #[value(name = "gpu-64")]
-    Gpu64,
+    /// A GPU's compute shaders, edge by edge
+    Gpu,
     /// A mesh shader: at most 64 vertices and 126 edges a patch
     MeshShader,
 }
@@ -108,8 +104,7 @@ impl From<Runtime> for CostModel {
             Runtime::Paper => Self::PAPER,
             Runtime::CpuScalar => Self::CPU_SCALAR,
             Runtime::CpuSimd => Self::CPU_SIMD,
-            Runtime::Gpu32 => Self::GPU_32,
-            Runtime::Gpu64 => Self::GPU_64,
+            Runtime::Gpu => Self::GPU,
             Runtime::MeshShader => Self::MESH_SHADER,
         }
     }
@@ -291,7 +286,7 @@ mod tests {
             }),
         );
         check(FusionArgs { partition: Some(Partition(None)), ..none }, Err("--partition"));
-        check(FusionArgs { runtime: Some(Runtime::Gpu32), ..paper }, Err("--runtime"));
+        check(FusionArgs { runtime: Some(Runtime::Gpu), ..paper }, Err("--runtime"));
     }
 
     #[test]

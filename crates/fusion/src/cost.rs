@@ -54,12 +54,6 @@ impl CostModel {
     /// patches.
     pub const GPU: Self = Self { patch_test: 48.0 / 32.0, ..Self::PAPER };
 
-    /// A compute shader with workgroups of 32, one per block of a survivor.
-    pub const GPU_32: Self = Self { accepted_patch: 4.0, block: 32, ..Self::PAPER };
-
-    /// A compute shader with workgroups of 64, one per block of a survivor.
-    pub const GPU_64: Self = Self { accepted_patch: 4.0, block: 64, ..Self::PAPER };
-
     /// A mesh shader workgroup per survivor, which emits at most 64 vertices and 126 primitives
     /// (Tsiapkolis and Bénard, CGF 2024, §4.4).
     pub const MESH_SHADER: Self =

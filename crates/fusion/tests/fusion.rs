@@ -270,7 +270,8 @@ fn no_patch_is_in_vain() {
     let paper = FusionParams::PAPER.with_max_partition(Some(40));
     // Pieces that are cut off, and costs that the published method knows nothing of.
     let short = CostModel { max_edges: 7, max_vertices: 5, ..CostModel::PAPER };
-    let in_blocks = FusionParams { cost: CostModel::GPU_32, ..FusionParams::PAPER };
+    let blocks = CostModel { accepted_patch: 4.0, block: 32, ..CostModel::PAPER };
+    let in_blocks = FusionParams { cost: blocks, ..FusionParams::PAPER };
     for params in [
         paper,
         FusionParams { cost: short, ..FusionParams::PAPER },

@@ -1,4 +1,5 @@
 //! What is found: on every shape, by every pipeline, and where work has to be split.
+#![allow(clippy::cast_possible_truncation, reason = "the meshes are small")]
 
 mod support;
 

@@ -44,7 +44,7 @@ fn what_was_asked_for_is_in_the_asset_and_in_the_json() {
         ("--profile 2.5", "profile", "2.5"),
         ("--bound minimal", "bound", "minimal"),
         ("--runtime mesh-shader", "runtime", "mesh-shader"),
-        ("--runtime gpu-32", "runtime", "gpu-32"),
+        ("--runtime gpu", "runtime", "gpu"),
     ] {
         let built = bench.json(&format!("patches {shape} -o a.patches {options} --json"));
         assert_eq!(built[key], value, "{options}");
@@ -65,7 +65,7 @@ fn options_that_contradict_each_other_are_refused() {
         ("--partition 512", ["--partition", "--preset paper"]),
         ("--preset best --partition none", ["--partition", "--preset paper"]),
         ("--preset paper --partition 1", ["--partition", "from 2"]),
-        ("--preset paper --runtime gpu-64", ["--runtime", "--preset paper"]),
+        ("--preset paper --runtime gpu", ["--runtime", "--preset paper"]),
         ("--preset quick", ["quick", "fast"]),
         ("--profile 0", ["--profile", "above 0"]),
         ("--profile -3", ["--profile", "above 0"]),

@@ -127,7 +127,7 @@ mod tests {
             rng = rng.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             f32::from_bits(0x3f80_0000 | (rng >> 9)) - 1.0
         };
-        for cost in [CostModel::PAPER, CostModel::GPU_64] {
+        for cost in [CostModel::PAPER, CostModel::MESH_SHADER] {
             let model = Model::new(cost, &ViewProfile::FAR);
             for len in [0, 1, 5] {
                 let block = |_| std::array::from_fn(|_| std::array::from_fn(|_| number()));
