@@ -15,11 +15,15 @@ fn patches_and_edges(
     }
     begin_patches(lane);
     let instance = work.first_instance + number / blocks;
-    let place = (number % blocks) * work.items_per_workgroup + lane.index;
-    var survivor = Survivor(0u, 0u, 0u);
-    if lane.index < work.items_per_workgroup && place < work.item_count {
-        survivor = test_patch(work.first_item + place, instance);
+    let first = (number % blocks) * work.items_per_workgroup;
+    let end = min(first + work.items_per_workgroup, work.item_count);
+    // Once, but where the work was cut for wider workgroups.
+    for (var i = first; i < end; i += WIDTH) {
+        var survivor = Survivor(0u, 0u, 0u);
+        if i + lane.index < end {
+            survivor = test_patch(work.first_item + i + lane.index, instance);
+        }
+        test_edges(survivor, lane);
     }
-    test_edges(survivor, lane);
     end_patches(lane);
 }

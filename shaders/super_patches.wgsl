@@ -26,15 +26,20 @@ fn super_patches_to_edges(
     }
     begin_patches(lane);
     let instance = work.first_instance + number / blocks;
-    find_patches((number % blocks) * work.items_per_workgroup, instance, lane);
-    let total = workgroupUniformLoad(&patch_total);
-    for (var first = 0u; first < total; first += WIDTH) {
-        let place = first + lane.index;
-        var survivor = Survivor(0u, 0u, 0u);
-        if place < total {
-            survivor = test_patch(patch_offsets[super_patch_of(place)] + place, instance);
+    let first = (number % blocks) * work.items_per_workgroup;
+    let end = min(first + work.items_per_workgroup, work.item_count);
+    // Once, but where the work was cut for wider workgroups.
+    for (var i = first; i < end; i += WIDTH) {
+        find_patches(i + lane.index, end, instance, lane);
+        let total = workgroupUniformLoad(&patch_total);
+        for (var first_place = 0u; first_place < total; first_place += WIDTH) {
+            let place = first_place + lane.index;
+            var survivor = Survivor(0u, 0u, 0u);
+            if place < total {
+                survivor = test_patch(patch_offsets[super_patch_of(place)] + place, instance);
+            }
+            test_edges(survivor, lane);
         }
-        test_edges(survivor, lane);
     }
     end_patches(lane);
     if lane.index == 0u {
@@ -43,12 +48,11 @@ fn super_patches_to_edges(
     }
 }
 
-// Lists the patches of the super-patches that survive.
-fn find_patches(first: u32, instance: u32, lane: Lane) {
-    let place = first + lane.index;
+// Lists the patches of the super-patches that survive, of one for each lane.
+fn find_patches(place: u32, end: u32, instance: u32, lane: Lane) {
     var first_patch = 0u;
     var count = 0u;
-    if lane.index < work.items_per_workgroup && place < work.item_count {
+    if place < end {
         let group = super_patches[work.first_item + place];
         atomicAdd(&super_patches_tested, group.weight);
         if may_hold_contour(group.bound, viewpoints[instance * work.part_count + group.part]) {
@@ -67,10 +71,10 @@ fn find_patches(first: u32, instance: u32, lane: Lane) {
         workgroupBarrier();
         patch_ends[lane.index] += before;
     }
-    let end = patch_ends[lane.index];
-    patch_offsets[lane.index] = first_patch - (end - count);
+    let patch_end = patch_ends[lane.index];
+    patch_offsets[lane.index] = first_patch - (patch_end - count);
     if lane.index == WIDTH - 1u {
-        patch_total = end;
+        patch_total = patch_end;
     }
 }
 

@@ -40,10 +40,10 @@ pub struct Content {
 
 /// A piece of a [`Content`] that fits a binding. Indices count from its own beginning.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Page {
+pub struct Chunk {
     /// Edges of the content.
     pub edges: Range<u32>,
-    /// What it holds of each part that is in it: the part, and edges of the page.
+    /// What it holds of each part that is in it: the part, and edges of the chunk.
     pub parts: Vec<(u32, Range<u32>)>,
     /// As [`Content::patches`].
     pub patches: Vec<Group>,
@@ -162,13 +162,13 @@ impl Content {
 
     /// Pieces of at most `max_edges` edges and `max_groups` patches each, both at least [`MAX_PIECE`].
     /// Patches that are longer are in several; super-patches too.
-    pub fn pages(&self, max_edges: u32, max_groups: u32) -> Vec<Page> {
+    pub fn chunks(&self, max_edges: u32, max_groups: u32) -> Vec<Chunk> {
         if self.patches.is_empty() {
             let cuts = (0..self.edge_count()).step_by(max_edges.max(1) as usize);
             let end = |first: u32| first.saturating_add(max_edges).min(self.edge_count());
-            return cuts.map(|first| self.page(first..end(first), 0..0)).collect();
+            return cuts.map(|first| self.chunk(first..end(first), 0..0)).collect();
         }
-        let mut pages = Vec::new();
+        let mut chunks = Vec::new();
         let mut first = 0;
         while first < self.patches.len() {
             let start = self.patches[first].first;
@@ -176,13 +176,13 @@ impl Content {
             let most = max_groups.max(1) as usize;
             let taken = self.patches[first..].iter().take(most).take_while(fits).count().max(1);
             let last = &self.patches[first + taken - 1];
-            pages.push(self.page(start..last.first + last.count, first..first + taken));
+            chunks.push(self.chunk(start..last.first + last.count, first..first + taken));
             first += taken;
         }
-        pages
+        chunks
     }
 
-    fn page(&self, edges: Range<u32>, patches: Range<usize>) -> Page {
+    fn chunk(&self, edges: Range<u32>, patches: Range<usize>) -> Chunk {
         let parts = (0..).zip(&self.parts).filter_map(|(part, of_part)| {
             let shared = edges.start.max(of_part.start)..edges.end.min(of_part.end);
             let local =
@@ -198,7 +198,7 @@ impl Content {
             let shared = (first < end).then(|| end - first)?;
             Some(Group { first: first - here.start, count: shared, weight, ..*group })
         });
-        Page {
+        Chunk {
             parts: parts.collect(),
             patches: self.patches[patches].iter().map(moved).collect(),
             super_patches: super_patches.collect(),

@@ -34,16 +34,21 @@ pub struct EdgeEnds {
 impl EdgePlanes {
     /// The planes of the faces of `wing`, which must have both.
     ///
-    /// Normals are of exact differences of corners where f64 holds those, that is, unless coordinates of
-    /// one face differ by more than 2²⁹ in size, and then good to 2⁻⁵⁰; slivers too.
+    /// Normals are good to 2⁻⁵⁰, of slivers too, where f64 holds the differences of corners: unless
+    /// coordinates of one face differ by more than 2²⁹ in size.
     pub fn new(positions: &[Vec3], wing: &Wing, frame: &Frame) -> Self {
-        let [left, right] = Self::in_f64(positions, wing, frame).map(|plane| plane.as_vec4());
+        let [left, right] = [wing.left_face(), wing.right_face()]
+            .map(|face| plane(positions, face, frame).as_vec4());
         Self { left, right }
     }
 
-    /// The same planes, left and right, before they are rounded to f32.
+    /// The same planes, left and right, before they are rounded to f32. NaN where f64 does not hold the
+    /// differences of corners, so that nothing is sure.
     pub fn in_f64(positions: &[Vec3], wing: &Wing, frame: &Frame) -> [DVec4; 2] {
-        [wing.left_face(), wing.right_face()].map(|face| plane(positions, face, frame))
+        [wing.left_face(), wing.right_face()].map(|face| {
+            let is_sure = are_differences_exact(positions, face);
+            if is_sure { plane(positions, face, frame) } else { DVec4::NAN }
+        })
     }
 
     /// Twin of `is_contour` in shared/contour.wgsl: one face from the front, the other from behind.
@@ -57,12 +62,12 @@ impl EdgePlanes {
     ///
     /// Let u = 2⁻²⁴. Rounding turns n by at most u, so that n · v is off by u|v|, and so it is by rounding
     /// v; −n · p is at most √3 in size, since coordinates are within 1, and off by u of that. Four
-    /// products are added, in any order, fused or not: another 4u(|v| + √3 w) at most. All that is below
-    /// 8u(|v| + 2w).
+    /// products are added, in any order, fused or not. A shader may round each result to either neighbour,
+    /// by 2u: another 8u(|v| + √3 w) at most. All that is below 10u(|v| + 2w).
     pub fn doubt(viewpoint: Vec4) -> f64 {
         let unit = 1.0 / f64::from(1u32 << 24);
         let viewpoint = viewpoint.as_dvec4();
-        8.0 * unit * (viewpoint.truncate().length() + 2.0 * viewpoint.w)
+        10.0 * unit * (viewpoint.truncate().length() + 2.0 * viewpoint.w)
     }
 
     /// Whether f32 may mistake the side of one of `planes`, which [`EdgePlanes::in_f64`] gives: then a GPU
@@ -70,9 +75,9 @@ impl EdgePlanes {
     /// [`Frame::viewpoint`] gives.
     pub fn is_doubtful(planes: &[DVec4; 2], viewpoint: Vec4) -> bool {
         let (doubt, viewpoint) = (Self::doubt(viewpoint), viewpoint.as_dvec4());
-        // From faces without area, all is certain.
-        let is_near = |plane: &DVec4| *plane != DVec4::ZERO && plane.dot(viewpoint).abs() <= doubt;
-        planes.iter().any(is_near)
+        // From faces without area, all is certain; from NaN, nothing.
+        let is_sure = |plane: &DVec4| *plane == DVec4::ZERO || plane.dot(viewpoint).abs() > doubt;
+        !planes.iter().all(is_sure)
     }
 }
 
@@ -96,13 +101,25 @@ fn plane(positions: &[Vec3], face: [u32; 3], frame: &Frame) -> DVec4 {
         difference_of_products(u.z, v.x, u.x, v.z),
         difference_of_products(u.x, v.y, u.y, v.x),
     );
-    // Exactly, where differences of corners are rounded.
+    // Exactly, for where differences of corners are rounded.
     if !has_area(sorted.map(|vertex| positions[vertex as usize])) || normal == DVec3::ZERO {
         return DVec4::ZERO;
     }
     let normal = (normal / normal.abs().max_element()).normalize();
     let plane = normal.extend(-normal.dot(frame.point(a)));
     if is_turned { -plane } else { plane }
+}
+
+/// Whether f64 holds the differences that the normal of `face` comes from.
+fn are_differences_exact(positions: &[Vec3], mut face: [u32; 3]) -> bool {
+    face.sort_unstable();
+    let [a, b, c] = face.map(|vertex| positions[vertex as usize].as_dvec3());
+    [b, c].into_iter().all(|corner| {
+        let difference = corner - a;
+        // Knuth's two-sum: what rounding took from each difference.
+        let a_seen = corner - difference;
+        (corner - (difference + a_seen)) + (a_seen - a) == DVec3::ZERO
+    })
 }
 
 /// a b − c d, off by at most 1.5 units in the last place (Kahan; Jeannerod, Louvet and Muller, Further

@@ -42,14 +42,14 @@ impl Frame {
     /// A viewpoint as shaders take it: homogeneous, with w above 0 for a point and 0 for a direction,
     /// and no coordinate above 1. Rounded, by 2⁻²⁴ of each coordinate in the frame.
     pub fn viewpoint(&self, viewpoint: Viewpoint) -> Vec4 {
+        // Homogeneous, so that the scale need not be multiplied: that may be too much for f64.
         let (xyz, w) = if viewpoint.is_point() {
-            (self.point(viewpoint.xyz()), 1.0)
+            (viewpoint.xyz() - self.center, 1.0 / self.scale)
         } else {
             (viewpoint.xyz(), 0.0)
         };
-        let size = xyz.abs().max_element();
-        // Points that are near stay as they are. A power of two rounds nothing.
-        let size = if w == 0.0 { size } else { size.max(1.0) };
+        // Of points that are near, w is 1. A power of two rounds nothing.
+        let size = xyz.abs().max_element().max(w);
         let scale = if size > 0.0 { 1.0 / power_of_two_above(size) } else { 1.0 };
         (xyz.extend(w) * scale).as_vec4()
     }

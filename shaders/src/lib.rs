@@ -5,6 +5,8 @@
 //! valid under the limits of plain WebGPU, and made by concatenating files of this crate, of which
 //! `shared/contour.wgsl` holds the tests of patches and edges as pure functions without bindings.
 //!
+//! - Variants with subgroup operations are for wgpu and naga as they are; a browser wants the line
+//!   `enable subgroups;` before them, which naga does not know yet.
 //! - Every struct that a shader reads is here, with the same layout; tests compare both through naga.
 //! - Arithmetic is f32, in a [`Frame`] of the mesh's own: whatever its size and wherever it lies. What
 //!   that costs in accuracy is a stated margin ([`EdgePlanes::doubt`]).
@@ -32,7 +34,7 @@ mod frame;
 mod layout;
 mod sources;
 
-pub use content::{Content, MAX_PIECE, Page};
+pub use content::{Chunk, Content, MAX_PIECE};
 pub use edge::{EdgeEnds, EdgePlanes};
 pub use frame::Frame;
 pub use layout::{

@@ -155,35 +155,35 @@ fn planes_of_a_face_are_the_same_for_each_edge() {
 }
 
 #[test]
-fn content_holds_every_edge_once_and_pages_do_too() {
+fn content_holds_every_edge_once_and_chunks_do_too() {
     for levels in [Levels::One, Levels::Two] {
         let sets = [2_000, 300].map(|count| patches(&shapes::torus_knot(count), levels));
         let content = Content::new(&[&sets[0], &sets[1]]);
         assert_eq!(content.edge_count() as usize, sets[0].wings().len() + sets[1].wings().len());
         assert_eq!(content.parts[1], content.parts[0].end..content.edge_count());
         for most in [u32::MAX, 1_000, MAX_PIECE] {
-            let pages = content.pages(most, if most == MAX_PIECE { 3 } else { u32::MAX });
+            let chunks = content.chunks(most, if most == MAX_PIECE { 3 } else { u32::MAX });
             let mut next = 0;
-            for page in &pages {
-                assert_eq!(page.edges.start, next);
-                assert!(page.edges.end - page.edges.start <= most);
-                next = page.edges.end;
-                let length = page.edges.end - page.edges.start;
-                follow_on(&page.patches, length);
+            for chunk in &chunks {
+                assert_eq!(chunk.edges.start, next);
+                assert!(chunk.edges.end - chunk.edges.start <= most);
+                next = chunk.edges.end;
+                let length = chunk.edges.end - chunk.edges.start;
+                follow_on(&chunk.patches, length);
                 if levels == Levels::Two {
-                    follow_on(&page.super_patches, page.patches.len() as u32);
+                    follow_on(&chunk.super_patches, chunk.patches.len() as u32);
                 }
-                let parts: u32 = page.parts.iter().map(|(_, edges)| edges.end - edges.start).sum();
+                let parts: u32 = chunk.parts.iter().map(|(_, edges)| edges.end - edges.start).sum();
                 assert_eq!(parts, length);
             }
             assert_eq!(next, content.edge_count());
-            let weights = |groups: &dyn Fn(&drypoint_shaders::Page) -> Vec<Group>| -> u32 {
-                pages.iter().flat_map(groups).map(|group| group.weight).sum()
+            let weights = |groups: &dyn Fn(&drypoint_shaders::Chunk) -> Vec<Group>| -> u32 {
+                chunks.iter().flat_map(groups).map(|group| group.weight).sum()
             };
             let patches = sets[0].patches().len() + sets[1].patches().len();
-            assert_eq!(weights(&|page| page.patches.clone()) as usize, patches);
+            assert_eq!(weights(&|chunk| chunk.patches.clone()) as usize, patches);
             let supers = sets[0].super_patches().len() + sets[1].super_patches().len();
-            assert_eq!(weights(&|page| page.super_patches.clone()) as usize, supers);
+            assert_eq!(weights(&|chunk| chunk.super_patches.clone()) as usize, supers);
         }
     }
 }
@@ -241,6 +241,26 @@ fn bounds_in_the_frame_cull_nothing_that_they_did_not() {
     );
 }
 
+/// Corners so far apart that f64 does not hold their differences: its normal may be any, and is not trusted.
+#[test]
+fn faces_that_f64_does_not_hold_are_doubtful() {
+    let far = 1e20;
+    let positions = [
+        Vec3::new(1.0, 2.0, 0.0),
+        Vec3::new(far, far, 0.0),
+        Vec3::new(2.0 * far, 2.0 * far, 0.0),
+        Vec3::new(far, 0.0, far),
+    ];
+    let frame = Frame::new(positions);
+    let wing = drypoint_mesh::Wing { tail: 0, head: 1, left: 2, right: 3 };
+    let planes = EdgePlanes::in_f64(&positions, &wing, &frame);
+    assert!(planes[0].is_nan() && EdgePlanes::is_doubtful(&planes, Vec4::new(0.1, 0.2, -0.9, 1.0)));
+    // The same without what is too small beside the rest: the left face has no area.
+    let near = positions.map(|position| position / far + Vec3::ONE);
+    let planes = EdgePlanes::in_f64(&near, &wing, &Frame::new(near));
+    assert!(planes[0] == glam::DVec4::ZERO && planes[1].is_finite());
+}
+
 #[test]
 fn frames_hold_meshes_of_any_size_and_place() {
     for (center, size) in [(0.0, 1.0), (1e6, 3.0), (-1e30, 1e28), (1e-30, 1e-30), (5.0, 0.0)] {
@@ -254,4 +274,7 @@ fn frames_hold_meshes_of_any_size_and_place() {
     }
     let far = Frame::new([Vec3::ZERO]).viewpoint(Viewpoint::at(DVec3::new(1e60, 0.0, 0.0)));
     assert!(far.is_finite() && far.x > 0.4, "{far}");
+    let tiny = Frame::new([Vec3::splat(-1e-30), Vec3::splat(1e-30)]);
+    let far = tiny.viewpoint(Viewpoint::at(DVec3::new(0.0, 1e290, 0.0)));
+    assert!(far.is_finite() && far.y > 0.4, "{far}");
 }

@@ -6,7 +6,7 @@ use wgpu::BufferUsages;
 
 use crate::Error;
 use crate::bindings::bind;
-use crate::device::{buffer, checked};
+use crate::device::{allow, buffer, checked};
 use crate::extractor::Extractor;
 use crate::model::Model;
 use crate::placement::Placement;
@@ -15,7 +15,8 @@ use crate::readback::Readback;
 use crate::staging::Staging;
 use crate::statistics::Statistics;
 
-/// What there is room for.
+/// What there is room for. One buffer holds the segments, which on devices with common limits of 128 MiB are
+/// 8.4 million: where more are to be expected, share instances out to several [`Contours`] of one model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
     /// Placements in a frame: instances times parts of the model. 64 bytes each.
@@ -82,6 +83,8 @@ impl Contours {
     pub fn new(extractor: &Extractor, model: &Model, capacity: Capacity) -> Result<Self, Error> {
         let device = extractor.device();
         let limits = extractor.plan_limits();
+        let transforms = u64::from(capacity.placements) * size_of::<Transform>() as u64;
+        allow(device, "the placements of a frame", transforms, BufferUsages::STORAGE)?;
         let dispatches = most_dispatches(model, capacity, limits);
         let layout = InputLayout::new(&device.limits(), capacity.placements, dispatches);
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
@@ -145,7 +148,8 @@ impl Contours {
     ///
     /// # Errors
     /// If there are more placements than there is room for or not one for each part, if one has no inverse,
-    /// if patches are asked for where there are none, or if the device is lost. Nothing is recorded then.
+    /// if patches are asked for where there are none, or if the device is lost. Nothing is recorded then, and there is
+    /// nothing to record or to draw until it succeeds again.
     pub fn prepare(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -153,21 +157,12 @@ impl Contours {
         method: Method,
     ) -> Result<(), Error> {
         self.check(placements, method)?;
-        self.viewpoints.clear();
-        self.transforms.clear();
-        let frames = &self.model.content.frames;
-        for (index, placement) in placements.iter().enumerate() {
-            let frame = &frames[index % frames.len()];
-            let viewpoint =
-                placement.viewpoint_in(frame).ok_or(Error::SingularPlacement { index })?;
-            self.viewpoints.push(viewpoint);
-            self.transforms.push(Transform::from(placement.to_scene));
-        }
         self.dispatches.clear();
+        self.place(placements).inspect_err(|_| self.transforms.clear())?;
         #[expect(clippy::cast_possible_truncation, reason = "no more than the capacity, a u32")]
-        let instances = (placements.len() / frames.len()) as u32;
+        let instances = (placements.len() / self.model.content.frames.len()) as u32;
         plan(&self.model, method, instances, self.capacity, self.limits)
-            .dispatches(&mut self.dispatches);
+            .dispatches(&mut |dispatch| self.dispatches.push(dispatch));
         self.work.clear();
         for dispatch in &self.dispatches {
             self.work.extend_from_slice(bytemuck::bytes_of(&dispatch.work));
@@ -178,9 +173,28 @@ impl Contours {
             (self.layout.transforms, bytemuck::cast_slice(&self.transforms)),
             (self.layout.work, &self.work),
         ];
-        self.staging.write(&self.device, encoder, &self.input, &pieces)?;
+        if let Err(error) = self.staging.write(&self.device, encoder, &self.input, &pieces) {
+            self.transforms.clear();
+            self.dispatches.clear();
+            return Err(error);
+        }
         for counted in [&self.counters, &self.totals, &self.arguments] {
             encoder.clear_buffer(counted, 0, None);
+        }
+        Ok(())
+    }
+
+    /// Carries viewpoints into the frames of parts.
+    fn place(&mut self, placements: &[Placement]) -> Result<(), Error> {
+        self.viewpoints.clear();
+        self.transforms.clear();
+        let frames = &self.model.content.frames;
+        for (index, placement) in placements.iter().enumerate() {
+            let frame = &frames[index % frames.len()];
+            let viewpoint =
+                placement.viewpoint_in(frame).ok_or(Error::SingularPlacement { index })?;
+            self.viewpoints.push(viewpoint);
+            self.transforms.push(Transform::from(placement.to_scene));
         }
         Ok(())
     }

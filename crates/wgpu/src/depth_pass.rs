@@ -128,7 +128,7 @@ impl Surface {
     /// Uploads the triangles of `meshes`, those that the parts of the model were made from, in that order.
     ///
     /// # Errors
-    /// [`Error::OtherMeshes`] if the model has other vertices, or if the GPU has not enough memory.
+    /// [`Error::OtherMeshes`] if the model has not as many vertices, or if the GPU has not enough memory.
     pub fn new(pass: &DepthPass, contours: &Contours, meshes: &[&Mesh]) -> Result<Self, Error> {
         let (device, model) = (&pass.device, contours.model());
         if !model.is_of(meshes) {

@@ -16,9 +16,8 @@ pub struct Gpu {
 }
 
 /// Features that extraction uses where they are there.
-pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::SUBGROUP
-    .union(wgpu::Features::TIMESTAMP_QUERY)
-    .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+pub const WANTED_FEATURES: wgpu::Features =
+    wgpu::Features::SUBGROUP.union(wgpu::Features::TIMESTAMP_QUERY);
 
 impl Gpu {
     /// The adapter that the system prefers for heavy work, with [`WANTED_FEATURES`] where it has them
@@ -174,7 +173,8 @@ pub(crate) fn filled<T: bytemuck::Pod>(
     Ok(buffer)
 }
 
-fn allow(
+/// Fails if a buffer would be larger than the device allows.
+pub(crate) fn allow(
     device: &wgpu::Device,
     what: &'static str,
     bytes: u64,

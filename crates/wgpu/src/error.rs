@@ -88,6 +88,9 @@ pub enum Error {
         /// Most pixels a side.
         limit: u32,
     },
+    /// A model needs a part.
+    #[error("a model needs at least one part")]
+    NoParts,
     /// Patches were asked for from a model that was made without.
     #[error("the model was made from a mesh without patches: brute force is all it can do")]
     NoPatches,

@@ -91,7 +91,7 @@ impl Extractor {
         let limits = PlanLimits {
             width,
             row: device.limits().max_compute_workgroups_per_dimension,
-            edges: 1 << 31,
+            edges: 1 << 28,
         };
         Self {
             limits,
@@ -121,7 +121,7 @@ impl Extractor {
             };
             let offset = contours.work_offset(index);
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &contours.model().content.pages[dispatch.page].bindings, &[]);
+            pass.set_bind_group(0, &contours.model().content.chunks[dispatch.chunk].bindings, &[]);
             pass.set_bind_group(1, &contours.work_bindings, &[offset]);
             pass.dispatch_workgroups(dispatch.grid[0], dispatch.grid[1], 1);
             pass.set_pipeline(&self.tally);

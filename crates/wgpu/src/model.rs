@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
-use drypoint_shaders::{Content, EdgeEnds, EdgePlanes, Frame, Group, MAX_PIECE, Page};
+use drypoint_shaders::{Chunk, Content, EdgeEnds, EdgePlanes, Frame, Group, MAX_PIECE};
 use glam::Vec3;
 use wgpu::BufferUsages;
 
@@ -26,16 +26,16 @@ pub struct Model {
 #[derive(Debug)]
 pub(crate) struct Uploaded {
     pub(crate) frames: Vec<Frame>,
-    pub(crate) pages: Vec<UploadedPage>,
+    pub(crate) chunks: Vec<UploadedChunk>,
     pub(crate) positions: wgpu::Buffer,
     pub(crate) edge_count: u64,
     pub(crate) has_patches: bool,
 }
 
-/// A [`Page`] of the model, which fits the device's bindings.
+/// A [`Chunk`] of the model, which fits the device's bindings.
 #[derive(Debug)]
-pub(crate) struct UploadedPage {
-    pub(crate) page: Page,
+pub(crate) struct UploadedChunk {
+    pub(crate) chunk: Chunk,
     pub(crate) bindings: wgpu::BindGroup,
 }
 
@@ -44,7 +44,8 @@ impl Model {
     /// patch sets, with exact predicates and a normal for each edge.
     ///
     /// # Errors
-    /// If the GPU has not enough memory, or a part's vertices do not fit one binding.
+    /// If there is no part, if the GPU has not enough memory, or if the vertices of all parts, 12 bytes each, do
+    /// not fit one binding.
     pub fn new(extractor: &Extractor, parts: &[&PatchSet]) -> Result<Self, Error> {
         Self::upload(extractor, &Content::new(parts))
     }
@@ -68,6 +69,9 @@ impl Model {
     /// # Errors
     /// As [`Model::new`].
     pub fn upload(extractor: &Extractor, content: &Content) -> Result<Self, Error> {
+        if content.frames.is_empty() {
+            return Err(Error::NoParts);
+        }
         let device = extractor.device();
         let positions: &[f32] = bytemuck::cast_slice(&content.positions);
         let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC;
@@ -75,16 +79,16 @@ impl Model {
         let limit = largest_storage(&device.limits());
         let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
         let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
-        let pages = content.pages(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
-        let upload = |page: Page| {
-            let bindings = upload_page(extractor, content, &page)?;
-            Ok(UploadedPage { page, bindings })
+        let chunks = content.chunks(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
+        let upload = |chunk: Chunk| {
+            let bindings = upload_chunk(extractor, content, &chunk)?;
+            Ok(UploadedChunk { chunk, bindings })
         };
-        let pages = pages.into_iter().map(upload).collect::<Result<_, _>>()?;
+        let chunks = chunks.into_iter().map(upload).collect::<Result<_, _>>()?;
         Ok(Self {
             content: Arc::new(Uploaded {
                 frames: content.frames.clone(),
-                pages,
+                chunks,
                 positions,
                 edge_count: u64::from(content.edge_count()),
                 has_patches: !content.patches.is_empty(),
@@ -120,21 +124,21 @@ impl Model {
     }
 }
 
-fn upload_page(
+fn upload_chunk(
     extractor: &Extractor,
     content: &Content,
-    page: &Page,
+    chunk: &Chunk,
 ) -> Result<wgpu::BindGroup, Error> {
     let device = extractor.device();
-    let edges = page.edges.start as usize..page.edges.end as usize;
+    let edges = chunk.edges.start as usize..chunk.edges.end as usize;
     let usage = BufferUsages::STORAGE;
     let planes: &[EdgePlanes] = &content.planes[edges.clone()];
     let ends: &[EdgeEnds] = &content.ends[edges];
     let buffers = [
         filled(device, "the planes of a model", planes, usage)?,
         filled(device, "the edges of a model", ends, usage)?,
-        filled(device, "the patches of a model", &at_least_one(&page.patches), usage)?,
-        filled(device, "the super-patches of a model", &at_least_one(&page.super_patches), usage)?,
+        filled(device, "the patches of a model", &at_least_one(&chunk.patches), usage)?,
+        filled(device, "the super-patches of a model", &at_least_one(&chunk.super_patches), usage)?,
     ];
     let resources = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
     bind(device, "the bindings of a model", extractor.model_layout(), resources)

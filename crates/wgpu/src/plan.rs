@@ -26,8 +26,8 @@ pub(crate) enum Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Dispatch {
     pub(crate) stage: Stage,
-    /// The page of the model.
-    pub(crate) page: usize,
+    /// The chunk of the model.
+    pub(crate) chunk: usize,
     pub(crate) work: Work,
     /// Workgroups along x and y.
     pub(crate) grid: [u32; 2],
@@ -40,7 +40,8 @@ pub(crate) struct PlanLimits {
     pub(crate) width: u32,
     /// Workgroups along one dimension.
     pub(crate) row: u32,
-    /// Edges of all instances, so that counters of 32 bits hold what one dispatch can find.
+    /// Edges of all instances, 8 GiB of planes: far less than counters of 32 bits hold, and than what takes so
+    /// long that a system takes the GPU away.
     pub(crate) edges: u32,
 }
 
@@ -64,45 +65,45 @@ pub(crate) struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Adds its dispatches to `dispatches`.
-    pub(crate) fn dispatches(&self, dispatches: &mut Vec<Dispatch>) {
-        for (index, uploaded) in self.model.pages.iter().enumerate() {
-            let page = &uploaded.page;
+    /// Hands its dispatches to `visit`, in order.
+    pub(crate) fn dispatches(&self, visit: &mut impl FnMut(Dispatch)) {
+        for (index, uploaded) in self.model.chunks.iter().enumerate() {
+            let chunk = &uploaded.chunk;
             if self.method == Method::BruteForce {
-                for (part, edges) in &page.parts {
+                for (part, edges) in &chunk.parts {
                     let items = [edges.start, edges.end - edges.start];
-                    self.cut(index, Stage::Edges, items, *part, dispatches);
+                    self.cut(index, Stage::Edges, items, *part, visit);
                 }
-            } else if page.super_patches.is_empty() {
-                self.cut(index, Stage::Patches, [0, count(&page.patches)], 0, dispatches);
+            } else if chunk.super_patches.is_empty() {
+                self.cut(index, Stage::Patches, [0, count(&chunk.patches)], 0, visit);
             } else {
-                let items = [0, count(&page.super_patches)];
-                self.cut(index, Stage::SuperPatches, items, 0, dispatches);
+                let items = [0, count(&chunk.super_patches)];
+                self.cut(index, Stage::SuperPatches, items, 0, visit);
             }
         }
     }
 
     /// Most dispatches that fewer instances or other shares could need: with the least for a workgroup.
     pub(crate) fn most_dispatches(&self) -> usize {
-        let mut dispatches = Vec::new();
+        let mut count = 0;
         let limits = PlanLimits { width: 1, ..self.limits };
-        Self { limits, ..*self }.dispatches(&mut dispatches);
-        dispatches.len()
+        Self { limits, ..*self }.dispatches(&mut |_| count += 1);
+        count
     }
 
     fn cut(
         &self,
-        page: usize,
+        chunk: usize,
         stage: Stage,
         [first, count]: [u32; 2],
         part: u32,
-        dispatches: &mut Vec<Dispatch>,
+        visit: &mut impl FnMut(Dispatch),
     ) {
         let share = self.share(stage, count);
         // Workgroups are numbered in 32 bits.
         let most_workgroups = (u64::from(self.limits.row).pow(2)).min(u64::from(u32::MAX / 2));
         let most_items = small(most_workgroups * u64::from(share));
-        let edges = &self.model.pages[page].page.edges;
+        let edges = &self.model.chunks[chunk].chunk.edges;
         let most_instances = self.limits.edges / (edges.end - edges.start).max(1);
         for first_item in (first..first + count).step_by(most_items as usize) {
             let item_count = most_items.min(first + count - first_item);
@@ -123,7 +124,7 @@ impl Plan<'_> {
                     segment_capacity: self.segment_capacity,
                 };
                 let grid = [row, workgroups.div_ceil(row)];
-                dispatches.push(Dispatch { stage, page, work, grid });
+                visit(Dispatch { stage, chunk, work, grid });
             }
         }
     }

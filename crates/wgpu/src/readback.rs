@@ -27,6 +27,24 @@ struct Slot {
     state: Arc<AtomicU64>,
 }
 
+/// Tells what becomes of a request: its number when the answer is there, or that none will ever come.
+struct Report {
+    state: Arc<AtomicU64>,
+    outcome: u64,
+}
+
+impl Report {
+    fn answered(mut self, outcome: u64) {
+        self.outcome = outcome;
+    }
+}
+
+impl Drop for Report {
+    fn drop(&mut self) {
+        self.state.store(self.outcome, Ordering::Release);
+    }
+}
+
 impl Readback {
     /// For answers of `size` bytes, as many at once as a few frames ask for.
     pub(crate) fn new(device: &wgpu::Device, what: &'static str, size: u64) -> Result<Self, Error> {
@@ -49,27 +67,28 @@ impl Readback {
         self.requests += 1;
         encoder.copy_buffer_to_buffer(source, 0, &slot.buffer, 0, self.size);
         slot.state.store(BUSY, Ordering::Release);
-        let (state, number) = (Arc::clone(&slot.state), self.requests);
+        // Of an encoder that is dropped, the slot is free again.
+        let report = Report { state: Arc::clone(&slot.state), outcome: FREE };
+        let number = self.requests;
         encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |result| {
             // After a loss nothing comes any more.
-            state.store(if result.is_ok() { number } else { BUSY }, Ordering::Release);
+            report.answered(if result.is_ok() { number } else { BUSY });
         });
         true
     }
 
     /// The newest answer that has come since the last call, through `read`.
     pub(crate) fn newest<T>(&mut self, read: impl Fn(&[u8]) -> T) -> Option<T> {
-        let mut arrived: Vec<(u64, &Slot)> = Vec::new();
-        for slot in &self.slots {
-            let state = slot.state.load(Ordering::Acquire);
-            if state != FREE && state != BUSY {
-                arrived.push((state, slot));
-            }
-        }
-        arrived.sort_unstable_by_key(|(number, _)| *number);
+        let state = |slot: &Slot| slot.state.load(Ordering::Acquire);
+        let has_arrived = |state: u64| state != FREE && state != BUSY;
+        let last = self.slots.iter().map(state).filter(|&state| has_arrived(state)).max()?;
         let mut newest = None;
-        for (_, slot) in arrived {
-            newest = slot.buffer.slice(..self.size).get_mapped_range().ok().map(|view| read(&view));
+        for slot in self.slots.iter().filter(|slot| has_arrived(state(slot)) && state(slot) <= last)
+        {
+            if state(slot) == last {
+                let view = slot.buffer.slice(..self.size).get_mapped_range();
+                newest = view.ok().map(|view| read(&view));
+            }
             slot.buffer.unmap();
             slot.state.store(FREE, Ordering::Release);
         }

@@ -12,6 +12,8 @@ const FREE: u8 = 0;
 const BUSY: u8 = 1;
 /// Could not be mapped: the device is lost.
 const LOST: u8 = 2;
+/// Handed over in an encoder that was dropped: no longer mapped, and free to be mapped again.
+const ABANDONED: u8 = 3;
 
 /// Buffers of one size. There come to be as many as frames are under way at once.
 #[derive(Debug)]
@@ -24,6 +26,29 @@ pub(crate) struct Staging {
 struct Slot {
     buffer: wgpu::Buffer,
     state: Arc<AtomicU8>,
+}
+
+/// Tells what becomes of a buffer: that it is mapped, or that nobody ever will map it.
+struct Report {
+    state: Arc<AtomicU8>,
+    outcome: u8,
+}
+
+impl Report {
+    fn new(state: &Arc<AtomicU8>) -> Self {
+        state.store(BUSY, Ordering::Release);
+        Self { state: Arc::clone(state), outcome: ABANDONED }
+    }
+
+    fn mapped<E>(mut self, result: &Result<(), E>) {
+        self.outcome = if result.is_ok() { FREE } else { LOST };
+    }
+}
+
+impl Drop for Report {
+    fn drop(&mut self) {
+        self.state.store(self.outcome, Ordering::Release);
+    }
 }
 
 impl Staging {
@@ -62,6 +87,12 @@ impl Staging {
         target: &wgpu::Buffer,
         pieces: &[(u64, &[u8])],
     ) -> Result<(), Error> {
+        // Free from the next poll of the device on.
+        let is_abandoned = |slot: &&Slot| slot.state.load(Ordering::Acquire) == ABANDONED;
+        for Slot { buffer, state } in self.slots.iter().filter(is_abandoned) {
+            let report = Report::new(state);
+            buffer.map_async(wgpu::MapMode::Write, .., move |result| report.mapped(&result));
+        }
         let states = || self.slots.iter().map(|slot| slot.state.load(Ordering::Acquire));
         if states().any(|state| state == LOST) {
             return Err(Error::DeviceLost);
@@ -81,10 +112,9 @@ impl Staging {
         for &(offset, bytes) in pieces.iter().filter(|(_, bytes)| !bytes.is_empty()) {
             encoder.copy_buffer_to_buffer(buffer, offset, target, offset, bytes.len() as u64);
         }
-        state.store(BUSY, Ordering::Release);
-        let state = Arc::clone(state);
+        let report = Report::new(state);
         encoder.map_buffer_on_submit(buffer, wgpu::MapMode::Write, .., move |result| {
-            state.store(if result.is_ok() { FREE } else { LOST }, Ordering::Release);
+            report.mapped(&result);
         });
         Ok(())
     }

@@ -90,6 +90,48 @@ fn ten_thousand_frames_take_no_more_memory_than_a_hundred() {
     support::expect_silence();
 }
 
+/// What a surface that is lost after recording does, or an error on the way to `submit`.
+#[test]
+fn encoders_that_are_dropped_keep_nothing() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = support::gpu();
+    let (extractor, mut contours) = setup(&gpu);
+    let mut timer = Timer::new(&gpu.device, &gpu.queue).expect("software Vulkan has time stamps");
+    let mut frame = |index: u32, is_submitted: bool| {
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        contours.prepare(&mut encoder, &orbit(index), Method::Patches).expect("it fits");
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: Some(timer.compute_pass()),
+            });
+            extractor.record(&mut pass, &contours);
+        }
+        contours.request_statistics(&mut encoder);
+        timer.request(&mut encoder);
+        if is_submitted {
+            gpu.queue.submit([encoder.finish()]);
+        } else {
+            drop(encoder);
+        }
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is there");
+        let arrived = [contours.newest_statistics().is_some(), timer.newest().is_some()];
+        (arrived, contours.staging_buffers())
+    };
+    let (arrived, staging) = frame(0, true);
+    assert_eq!(arrived, [true; 2]);
+    for index in 1..50 {
+        assert_eq!(frame(index, false), ([false; 2], staging));
+    }
+    for index in 50..60 {
+        assert_eq!(frame(index, true), ([true; 2], staging));
+    }
+    support::expect_silence();
+}
+
 #[test]
 fn a_lost_device_is_an_error() {
     if support::is_without_gpu() {

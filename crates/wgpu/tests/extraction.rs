@@ -106,7 +106,36 @@ fn every_width_finds_the_same() {
     support::expect_silence();
 }
 
-/// Rows of 3 workgroups and bindings of 64 KiB: pages, tiles of items and tiles of instances, as 10 million
+/// Work is cut for the extractor that contours were made with; another may be narrower or wider.
+#[test]
+fn any_extractor_of_the_device_records() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let mesh = shapes::torus_knot(3_000);
+    let extractors = [32, 256].map(|width| {
+        let options = ExtractorOptions { width, subgroups: false };
+        Extractor::with_options(&gpu.device, &options).expect("shaders compile")
+    });
+    let placements = vec![placements(&mesh)[0]; 100];
+    for levels in [Levels::One, Levels::Two] {
+        let set = patches(&mesh, levels);
+        let expected = Expected::new(&set, &placements);
+        for [maker, recorder] in [[0, 1], [1, 0]] {
+            let model = Model::new(&extractors[maker], &[&set]).expect("there is memory");
+            let capacity = Capacity { placements: 100, segments: 200_000 };
+            let contours = Contours::new(&extractors[maker], &model, capacity);
+            let mut contours = contours.expect("there is memory");
+            let recorder = &extractors[recorder];
+            let found = extract(&gpu, recorder, &mut contours, &placements, Method::Patches);
+            expected.compare(&found.expect("it fits"), &format!("{levels:?}, by another"));
+        }
+    }
+    support::expect_silence();
+}
+
+/// Rows of 3 workgroups and bindings of 64 KiB: chunks, tiles of items and tiles of instances, as 10 million
 /// edges and 252 instances need on devices with common limits.
 #[test]
 fn work_beyond_the_limits_is_split() {
@@ -311,14 +340,35 @@ fn placements_that_cannot_be_are_refused() {
     let mut contours = Contours::new(&extractor, &model, capacity).expect("there is memory");
     let good = placements(&mesh)[0];
     let flat = Placement { to_scene: DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0)), ..good };
-    let mut refused = |placements: &[Placement]| {
-        extract(&gpu, &extractor, &mut contours, placements, Method::Patches)
-            .expect_err("it cannot be")
-    };
-    assert_eq!(refused(&[good; 3]), Error::TooManyPlacements { given: 3, capacity: 2 });
-    assert_eq!(refused(&[good, flat]), Error::SingularPlacement { index: 1 });
     let nowhere = Placement { viewpoint: Viewpoint::at(DVec3::NAN), ..good };
-    assert_eq!(refused(&[nowhere]), Error::SingularPlacement { index: 0 });
+    for (placements, error) in [
+        (vec![good; 3], Error::TooManyPlacements { given: 3, capacity: 2 }),
+        (vec![good, flat], Error::SingularPlacement { index: 1 }),
+        (vec![nowhere], Error::SingularPlacement { index: 0 }),
+    ] {
+        let found = extract(&gpu, &extractor, &mut contours, &placements, Method::Patches);
+        assert_eq!(found, Err(error));
+    }
+    // What was refused left nothing of the frame before.
+    let once = extract(&gpu, &extractor, &mut contours, &[good], Method::Patches).expect("it fits");
+    assert!(!once.is_empty());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let refused = contours.prepare(&mut encoder, &[good, flat], Method::Patches);
+    assert_eq!(refused, Err(Error::SingularPlacement { index: 1 }));
+    assert_eq!(contours.placement_count(), 0);
+    extractor.record(
+        &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()),
+        &contours,
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let mut still = contours.read_segments(&gpu.queue).expect("it fits");
+    still.sort_unstable();
+    assert_eq!(still, once);
+
+    assert_eq!(Model::new(&extractor, &[]).err(), Some(Error::NoParts));
+    let many = Capacity { placements: u32::MAX, segments: 1 };
+    let error = Contours::new(&extractor, &model, many).expect_err("no binding holds it");
+    assert!(matches!(error, Error::TooLarge { what: "the placements of a frame", .. }), "{error}");
     let huge = Capacity { placements: 1, segments: u32::MAX };
     let error = Contours::new(&extractor, &model, huge).expect_err("no binding holds it");
     assert!(matches!(error, Error::TooLarge { what: "segments", .. }), "{error}");
