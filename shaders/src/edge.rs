@@ -34,19 +34,20 @@ pub struct EdgeEnds {
 impl EdgePlanes {
     /// The planes of the faces of `wing`, which must have both.
     ///
-    /// Normals are good to 2⁻⁵⁰, of slivers too, where f64 holds the differences of corners: unless
-    /// coordinates of one face differ by more than 2²⁹ in size.
+    /// Normals are good to 2⁻⁵⁰, of slivers too, where f64 holds the differences of corners, and elsewhere
+    /// to what [`EdgePlanes::in_f64`] says.
     pub fn new(positions: &[Vec3], wing: &Wing, frame: &Frame) -> Self {
         let [left, right] = [wing.left_face(), wing.right_face()]
             .map(|face| plane(positions, face, frame).as_vec4());
         Self { left, right }
     }
 
-    /// The same planes, left and right, before they are rounded to f32. NaN where f64 does not hold the
-    /// differences of corners, so that nothing is sure.
+    /// The same planes, left and right, before they are rounded to f32. NaN where nothing is sure: where
+    /// coordinates of one face differ by more than 2²⁹ in size, and it is a sliver whose normal turns by 2⁻³⁴
+    /// radians or more when differences of its corners are rounded to f64.
     pub fn in_f64(positions: &[Vec3], wing: &Wing, frame: &Frame) -> [DVec4; 2] {
         [wing.left_face(), wing.right_face()].map(|face| {
-            let is_sure = are_differences_exact(positions, face);
+            let is_sure = is_normal_sure(positions, face);
             if is_sure { plane(positions, face, frame) } else { DVec4::NAN }
         })
     }
@@ -110,16 +111,18 @@ fn plane(positions: &[Vec3], face: [u32; 3], frame: &Frame) -> DVec4 {
     if is_turned { -plane } else { plane }
 }
 
-/// Whether f64 holds the differences that the normal of `face` comes from.
-fn are_differences_exact(positions: &[Vec3], mut face: [u32; 3]) -> bool {
+/// Whether rounding the differences of corners turns the normal of `face` by less than 2⁻³⁴ radians.
+fn is_normal_sure(positions: &[Vec3], mut face: [u32; 3]) -> bool {
     face.sort_unstable();
     let [a, b, c] = face.map(|vertex| positions[vertex as usize].as_dvec3());
-    [b, c].into_iter().all(|corner| {
+    let [(u, lost_of_u), (v, lost_of_v)] = [b, c].map(|corner| {
         let difference = corner - a;
-        // Knuth's two-sum: what rounding took from each difference.
+        // Knuth's two-sum: what rounding took.
         let a_seen = corner - difference;
-        (corner - (difference + a_seen)) + (a_seen - a) == DVec3::ZERO
-    })
+        (difference, (corner - (difference + a_seen)) + (a_seen - a))
+    });
+    let turned = lost_of_u.length() * v.length() + lost_of_v.length() * u.length();
+    turned <= u.cross(v).length() * f64::exp2(-34.0)
 }
 
 /// a b − c d, off by at most 1.5 units in the last place (Kahan; Jeannerod, Louvet and Muller, Further
