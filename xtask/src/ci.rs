@@ -8,8 +8,8 @@
 //! - *rust-version* asks cargo's metadata whether a dependency needs a newer compiler than the
 //!   workspace promises. That finds the usual way in which the promise breaks, without a second
 //!   toolchain.
-//! - *clippy* runs over all targets with the default features, then over the library of each crate
-//!   that has features, with none of them and with each alone: features are additive only if every
+//! - *clippy* runs over all targets with the default features, then over the library or program of each
+//!   crate that has features, with none of them and with each alone: features are additive only if every
 //!   one of them builds without the others. The two differ because cargo unifies features over the
 //!   workspace, so the first run never sees a crate without them.
 //! - *doc* turns a broken link in a doc comment into a failure.
@@ -94,7 +94,7 @@ fn clippy_by_feature(root: &Path) -> Result<(), String> {
     for (package, features) in packages_with_features(root)? {
         let clippy = |features: &str| {
             cargo(&format!(
-                "clippy -p {package} --lib --no-default-features {features} --locked -- -D warnings"
+                "clippy -p {package} --no-default-features {features} --locked -- -D warnings"
             ))
         };
         clippy("")?;
