@@ -46,16 +46,22 @@ impl std::ops::Neg for Height {
 pub(super) fn lowest_place(heights: &[Height], reach: f64, support: &mut Vec<usize>) -> DVec2 {
     let mut chosen: Vec<Height> = support.iter().map(|&index| heights[index]).collect();
     let mut place = DVec2::ZERO;
+    let mut lowest = f64::NEG_INFINITY;
     for _ in 0..MAX_ROUNDS {
         place = lowest_of_few(&chosen, reach);
         let known = highest_at(&chosen, place).1;
         let least = known - TOLERANCE * reach;
-        support.retain(|&index| heights[index].at(place) >= least);
         let (highest, height) = highest_at(heights, place);
-        if height <= known + TOLERANCE * reach {
+        let is_lowest = height <= known + TOLERANCE * reach;
+        // What is below all others there does not hold it up. While the height stays, nothing is dropped, or
+        // the same planes could come and go for ever.
+        if is_lowest || known > lowest + TOLERANCE * reach {
+            support.retain(|&index| heights[index].at(place) >= least);
+        }
+        if is_lowest {
             break;
         }
-        // What is below all others there does not hold it up.
+        lowest = known;
         support.push(highest);
         chosen.clear();
         chosen.extend(support.iter().map(|&index| heights[index]));
@@ -195,6 +201,11 @@ mod tests {
         check(&[height(1.0, 0.5, -0.5)], 1.0);
         check(&[height(1.0, 0.5, 0.0), height(1.0, -0.5, 0.0)], 1.0);
         check(&[height(1.0, 0.5, 0.0), height(3.0, 0.5, 0.0), height(2.0, 0.5, 0.0)], 1.0);
+        // Three that meet in one point above a level one.
+        let level = height(-0.9572830089253508, 0.0, 0.0);
+        let [up, aslant, down] =
+            [(0.0, 3.9), (3.6, -6.3), (-6.1, 0.0)].map(|(x, y)| height(0.0, x, y));
+        check(&[level, up, aslant, down], 2.0);
         // A pyramid upside down, with each side there twice, and its tip outside.
         for start in [0.0, 0.5, 7.0] {
             let side = |x: f64, y: f64| height(start * (x - y), x, y);
