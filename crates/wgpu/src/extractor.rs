@@ -82,11 +82,10 @@ impl Extractor {
         let work_layout = layout("extraction", &[work, WRITE, READ, WRITE]);
         let tally_layout = layout("totals", &[work, WRITE, WRITE, WRITE]);
         let placing_layout = layout("placed segments", &[READ, READ, READ, READ, WRITE]);
-        let maker = Maker { device };
         let of_extraction = [Some(&model_layout), Some(&work_layout)];
         let extraction = |sources: [&str; 2], entry: &str| {
             let source = prelude(width) + sources[subgroups as usize];
-            maker.pipeline(&of_extraction, &source, entry)
+            pipeline(device, &of_extraction, &source, entry)
         };
         let limits = PlanLimits {
             width,
@@ -98,8 +97,8 @@ impl Extractor {
             brute_force: extraction(BRUTE_FORCE, "brute_force"),
             patches: extraction(PATCHES, "patches_and_edges"),
             super_patches: extraction(SUPER_PATCHES, "super_patches_to_edges"),
-            tally: maker.pipeline(&[None, Some(&tally_layout)], TALLY, "tally"),
-            placing: maker.pipeline(&[Some(&placing_layout)], POSITIONS, "place_segments"),
+            tally: pipeline(device, &[None, Some(&tally_layout)], TALLY, "tally"),
+            placing: pipeline(device, &[Some(&placing_layout)], POSITIONS, "place_segments"),
             device: device.clone(),
             model_layout,
             work_layout,
@@ -165,38 +164,32 @@ impl Extractor {
     }
 }
 
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-}
-
-impl Maker<'_> {
-    fn pipeline(
-        &self,
-        layouts: &[Option<&wgpu::BindGroupLayout>],
-        source: &str,
-        entry: &str,
-    ) -> wgpu::ComputePipeline {
-        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(entry),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(entry),
-            bind_group_layouts: layouts,
-            immediate_size: 0,
-        });
-        // Shaders begin by writing what they read in workgroup memory.
-        let compilation_options = wgpu::PipelineCompilationOptions {
-            zero_initialize_workgroup_memory: false,
-            ..Default::default()
-        };
-        self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&layout),
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options,
-            cache: None,
-        })
-    }
+fn pipeline(
+    device: &wgpu::Device,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    source: &str,
+    entry: &str,
+) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(entry),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(entry),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    // Shaders begin by writing what they read in workgroup memory.
+    let compilation_options = wgpu::PipelineCompilationOptions {
+        zero_initialize_workgroup_memory: false,
+        ..Default::default()
+    };
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some(entry),
+        compilation_options,
+        cache: None,
+    })
 }

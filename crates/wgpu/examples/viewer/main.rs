@@ -29,6 +29,9 @@ use scene::Scene;
 use target::Target;
 
 /// Shows the contours of many instances of a model.
+///
+/// Drag to turn, scroll to come closer. C switches culling, P shows patches in colors, space stops the
+/// turning, escape ends.
 #[derive(Debug, Parser)]
 struct Args {
     /// An OBJ, PLY, STL or glTF file; a torus knot without.
