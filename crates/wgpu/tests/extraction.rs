@@ -118,13 +118,14 @@ fn any_extractor_of_the_device_records() {
         let options = ExtractorOptions { width, subgroups: false };
         Extractor::with_options(&gpu.device, &options).expect("shaders compile")
     });
-    let placements = vec![placements(&mesh)[0]; 100];
+    // So many that a workgroup gets more patches than the narrower one has lanes.
+    let placements = vec![placements(&mesh)[0]; 400];
     for levels in [Levels::One, Levels::Two] {
         let set = patches(&mesh, levels);
         let expected = Expected::new(&set, &placements);
         for [maker, recorder] in [[0, 1], [1, 0]] {
             let model = Model::new(&extractors[maker], &[&set]).expect("there is memory");
-            let capacity = Capacity { placements: 100, segments: 200_000 };
+            let capacity = Capacity { placements: 400, segments: 800_000 };
             let contours = Contours::new(&extractors[maker], &model, capacity);
             let mut contours = contours.expect("there is memory");
             let recorder = &extractors[recorder];
