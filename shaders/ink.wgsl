@@ -1,5 +1,6 @@
 // Gives what strokes cover their color.
 
+@group(0) @binding(0) var<uniform> stroke: Stroke;
 @group(1) @binding(0) var coverage: texture_2d<f32>;
 
 // One triangle that covers the screen.

@@ -1,10 +1,11 @@
 // What all extraction shaders read of a model and a frame, and where they write what they find.
 
-// Vertices of an edge, and what its id is in the mesh. Twin of src/edge.rs, EdgeEnds.
+// Vertices of an edge, its id in the mesh, and its class. Twin of src/edge.rs, EdgeEnds.
 struct EdgeEnds {
     from_vertex: u32,
     to_vertex: u32,
     edge: u32,
+    edge_class: u32,
 }
 
 @group(0) @binding(0) var<storage, read> planes: array<EdgePlanes>;

@@ -8,5 +8,3 @@ struct Stroke {
     // In pixels.
     half_width: f32,
 }
-
-@group(0) @binding(0) var<uniform> stroke: Stroke;

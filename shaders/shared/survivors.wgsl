@@ -1,16 +1,6 @@
 // From patches that are not culled to their edges: all lanes share the edges of all survivors evenly,
 // however many each has.
 
-// Patches, or super-patches with the patches in them. Twin of src/layout.rs, Group.
-struct Group {
-    bound: DoubleCone,
-    first: u32,
-    count: u32,
-    part: u32,
-    // 1, or 0 for a further piece of a patch and for edges that no patch holds: those do not count.
-    weight: u32,
-}
-
 @group(0) @binding(2) var<storage, read> patches: array<Group>;
 
 // Each lane's patch, if it survives: the end of its edges among those of all survivors ...

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use drypoint_bounds::DoubleCone;
 use drypoint_fusion::PatchSet;
-use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Wing};
+use drypoint_mesh::{EdgeClass, EdgeFilter, EdgeId, Mesh, MeshAdjacency, Wing};
 use glam::Vec3;
 
 use crate::layout::Group;
@@ -14,8 +14,27 @@ use crate::{EdgeEnds, EdgePlanes, Frame};
 /// that no workgroup is left with far more to do than others.
 pub const MAX_PIECE: u32 = 256;
 
-/// Most patches in an entry of [`Content::super_patches`] that stands for none.
-const MAX_UNGROUPED: u32 = 64;
+/// Most patches in one entry of [`Content::super_patches`]: larger super-patches are several, as patches
+/// are of [`MAX_PIECE`].
+pub const MAX_GROUP: u32 = 64;
+
+/// An edge that a [`Content`] is to hold.
+#[derive(Clone, Copy, Debug)]
+pub struct ContentEdge<'a> {
+    /// Its vertices and those of its two faces.
+    pub wing: &'a Wing,
+    /// Its id in the mesh's adjacency.
+    pub id: EdgeId,
+    /// Its class there.
+    pub class: EdgeClass,
+}
+
+impl<'a> ContentEdge<'a> {
+    /// An edge of two faces or more.
+    pub fn new(adjacency: &'a MeshAdjacency, id: EdgeId) -> Self {
+        Self { wing: &adjacency.wings()[id.index()], id, class: adjacency.class(id) }
+    }
+}
 
 /// All that extraction reads of a model of one or several rigid parts, part by part.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +77,8 @@ impl Content {
         let has_levels = parts.iter().any(|set| !set.super_patches().is_empty());
         for (part, &set) in (0..).zip(parts) {
             let first_edge = content.edge_count();
-            let edges = set.wings().iter().zip(set.edge_ids().iter().copied());
+            let named = set.wings().iter().zip(set.edge_ids()).zip(set.classes());
+            let edges = named.map(|((wing, &id), &class)| ContentEdge { wing, id, class });
             content.add_edges(set.positions(), edges);
             content.add_patches(part, first_edge, set, has_levels);
         }
@@ -68,7 +88,7 @@ impl Content {
     /// Of a mesh without patches, for brute force.
     pub fn without_patches(mesh: &Mesh, adjacency: &MeshAdjacency, filter: EdgeFilter) -> Self {
         let mut content = Self::default();
-        let edges = adjacency.edges(filter).map(|edge| (&adjacency.wings()[edge.index()], edge));
+        let edges = adjacency.edges(filter).map(|edge| ContentEdge::new(adjacency, edge));
         content.add_edges(mesh.positions(), edges.collect::<Vec<_>>().into_iter());
         content
     }
@@ -81,7 +101,7 @@ impl Content {
     /// If groups have more edges than there are.
     pub fn with_groups<'a>(
         positions: &[Vec3],
-        edges: impl Iterator<Item = (&'a Wing, EdgeId)> + Clone,
+        edges: impl Iterator<Item = ContentEdge<'a>> + Clone,
         groups: impl IntoIterator<Item = (DoubleCone, u32)>,
     ) -> Self {
         let mut content = Self::default();
@@ -91,11 +111,48 @@ impl Content {
         for (bound, edge_count) in groups {
             assert!(edge_count <= all - first, "groups have more edges than there are");
             let edges = first..first + edge_count;
-            push_pieces(&mut content.patches, frame.bound(&bound), 0, edges, 1);
+            let whole = group(frame.bound(&bound), 0, edges, 1);
+            push_pieces(&mut content.patches, whole, MAX_PIECE);
             first += edge_count;
         }
-        push_pieces(&mut content.patches, DoubleCone::ALWAYS, 0, first..all, 0);
+        let rest = group(DoubleCone::ALWAYS, 0, first..all, 0);
+        push_pieces(&mut content.patches, rest, MAX_PIECE);
         content
+    }
+
+    /// Whether all that it refers to is there: what shaders that check no index rely on.
+    ///
+    /// # Errors
+    /// What is not there. That of [`Content::new`] and the other ways to make one always is.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let is_within = |first: u32, count: u32, length: usize| {
+            u64::from(first) + u64::from(count) <= length as u64
+        };
+        let follow = |groups: &[Group], length: usize| {
+            let ends = groups.iter().map(|group| group.first.saturating_add(group.count));
+            let starts = groups.iter().skip(1).map(|group| group.first);
+            let is_gapless = ends.zip(starts).all(|(end, start)| end == start);
+            is_gapless && groups.iter().all(|group| is_within(group.first, group.count, length))
+        };
+        let vertices = self.positions.len();
+        let is_vertex = |vertex: u32| (vertex as usize) < vertices;
+        let is_part = |group: &Group| (group.part as usize) < self.frames.len();
+        let fits_piece = |group: &Group| (1..=MAX_PIECE).contains(&group.count);
+        let fits_group = |group: &Group| (1..=MAX_GROUP).contains(&group.count);
+        let has_vertices =
+            |ends: &EdgeEnds| is_vertex(ends.from_vertex) && is_vertex(ends.to_vertex);
+        let checks = [
+            (self.ends.len() == self.planes.len(), "planes or ends of edges"),
+            (self.ends.iter().all(has_vertices), "vertices"),
+            (self.parts.len() == self.frames.len(), "parts"),
+            (self.parts.iter().all(|p| is_within(0, p.end, self.planes.len())), "edges"),
+            (self.patches.iter().all(fits_piece), "pieces of patches"),
+            (follow(&self.patches, self.planes.len()), "edges of patches"),
+            (self.super_patches.iter().all(fits_group), "pieces of super-patches"),
+            (follow(&self.super_patches, self.patches.len()), "patches of super-patches"),
+            (self.patches.iter().chain(&self.super_patches).all(is_part), "parts of patches"),
+        ];
+        checks.into_iter().find(|(is_there, _)| !is_there).map_or(Ok(()), |(_, what)| Err(what))
     }
 
     /// Number of edges of all parts.
@@ -106,16 +163,18 @@ impl Content {
     fn add_edges<'a>(
         &mut self,
         positions: &[Vec3],
-        edges: impl Iterator<Item = (&'a Wing, EdgeId)> + Clone,
+        edges: impl Iterator<Item = ContentEdge<'a>> + Clone,
     ) {
-        let vertices = edges.clone().flat_map(|(w, _)| [w.tail, w.head, w.left, w.right]);
+        let vertices = edges.clone().map(|edge| edge.wing);
+        let vertices = vertices.flat_map(|w| [w.tail, w.head, w.left, w.right]);
         let frame = Frame::new(vertices.map(|vertex| positions[vertex as usize]));
         let first_vertex = count(self.positions.len());
         let first_edge = self.edge_count();
-        for (wing, edge) in edges {
+        for ContentEdge { wing, id: edge, class } in edges {
             let [from_vertex, to_vertex] = wing.ends().map(|vertex| first_vertex + vertex);
             self.planes.push(EdgePlanes::new(positions, wing, &frame));
-            self.ends.push(EdgeEnds { from_vertex, to_vertex, edge });
+            let edge_class = class as u32;
+            self.ends.push(EdgeEnds { from_vertex, to_vertex, edge, edge_class });
         }
         self.positions.extend_from_slice(positions);
         self.frames.push(frame);
@@ -130,34 +189,29 @@ impl Content {
         for patch in set.patches() {
             starts.push(self.patches.len());
             let edges = patch.edges().start + first_edge..patch.edges().end + first_edge;
-            push_pieces(&mut self.patches, frame.bound(&patch.bound), part, edges, 1);
+            let whole = group(frame.bound(&patch.bound), part, edges, 1);
+            push_pieces(&mut self.patches, whole, MAX_PIECE);
         }
         starts.push(self.patches.len());
         let always = set.always_tested();
         let edges = always.start + first_edge..always.end + first_edge;
-        push_pieces(&mut self.patches, DoubleCone::ALWAYS, part, edges, 0);
+        let rest = group(DoubleCone::ALWAYS, part, edges, 0);
+        push_pieces(&mut self.patches, rest, MAX_PIECE);
         if !has_levels {
             return;
         }
         let mut grouped = first_piece;
-        for group in set.super_patches() {
-            let [first, end] = [group.patches().start, group.patches().end];
+        for super_patch in set.super_patches() {
+            let [first, end] = [super_patch.patches().start, super_patch.patches().end];
             let pieces = starts[first as usize]..starts[end as usize];
             grouped = pieces.end;
-            self.super_patches.push(Group {
-                bound: frame.bound(&group.bound),
-                first: count(pieces.start),
-                count: count(pieces.len()),
-                part,
-                weight: 1,
-            });
+            let pieces = count(pieces.start)..count(pieces.end);
+            let whole = group(frame.bound(&super_patch.bound), part, pieces, 1);
+            push_pieces(&mut self.super_patches, whole, MAX_GROUP);
         }
-        for first in (grouped..self.patches.len()).step_by(MAX_UNGROUPED as usize) {
-            let count_here = count(self.patches.len() - first).min(MAX_UNGROUPED);
-            let bound = DoubleCone::ALWAYS;
-            let (first, count) = (count(first), count_here);
-            self.super_patches.push(Group { bound, first, count, part, weight: 0 });
-        }
+        let rest = count(grouped)..count(self.patches.len());
+        let rest = group(DoubleCone::ALWAYS, part, rest, 0);
+        push_pieces(&mut self.super_patches, rest, MAX_GROUP);
     }
 
     /// Pieces of at most `max_edges` edges and `max_groups` patches each, both at least [`MAX_PIECE`].
@@ -207,19 +261,37 @@ impl Content {
     }
 }
 
-/// Adds `edges` in pieces of [`MAX_PIECE`]; the first has the weight of all.
-fn push_pieces(
-    patches: &mut Vec<Group>,
-    bound: DoubleCone,
-    part: u32,
-    edges: Range<u32>,
-    weight: u32,
-) {
-    for first in edges.clone().step_by(MAX_PIECE as usize) {
-        let count = MAX_PIECE.min(edges.end - first);
-        let weight = if first == edges.start { weight } else { 0 };
-        patches.push(Group { bound, first, count, part, weight });
+impl Chunk {
+    /// Where blocks of super-patches that follow one another begin, and where the last one ends: each has
+    /// at most `most_patches`, but for one of a single super-patch. Empty without super-patches.
+    pub fn blocks(&self, most_patches: u32) -> Vec<u32> {
+        let mut blocks = Vec::new();
+        let mut patches = 0;
+        for (index, group) in (0..).zip(&self.super_patches) {
+            patches += group.count;
+            if index == 0 || patches > most_patches {
+                blocks.push(index);
+                patches = group.count;
+            }
+        }
+        if !blocks.is_empty() {
+            blocks.push(count(self.super_patches.len()));
+        }
+        blocks
     }
+}
+
+/// Adds `whole` in pieces of at most `most` edges or patches; the first has the weight of all.
+fn push_pieces(groups: &mut Vec<Group>, whole: Group, most: u32) {
+    let end = whole.first + whole.count;
+    for first in (whole.first..end).step_by(most as usize) {
+        let weight = if first == whole.first { whole.weight } else { 0 };
+        groups.push(Group { first, count: most.min(end - first), weight, ..whole });
+    }
+}
+
+fn group(bound: DoubleCone, part: u32, members: Range<u32>, weight: u32) -> Group {
+    Group { bound, first: members.start, count: members.end - members.start, part, weight }
 }
 
 fn count(length: usize) -> u32 {

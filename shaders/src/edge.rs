@@ -19,7 +19,7 @@ pub struct EdgePlanes {
     pub right: Vec4,
 }
 
-/// Vertices of an edge, lower index first, and its id in the mesh's adjacency.
+/// Vertices of an edge, lower index first, its id in the mesh's adjacency, and its class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct EdgeEnds {
@@ -29,6 +29,8 @@ pub struct EdgeEnds {
     pub to_vertex: u32,
     /// Id in the [`MeshAdjacency`](drypoint_mesh::MeshAdjacency).
     pub edge: EdgeId,
+    /// An [`EdgeClass`](drypoint_mesh::EdgeClass), as a number.
+    pub edge_class: u32,
 }
 
 impl EdgePlanes {

@@ -69,6 +69,31 @@ pub struct Counters {
     pub super_patches_accepted: u32,
 }
 
+/// What is counted during one draw of mesh shaders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DrawCounters {
+    /// Contour edges found.
+    pub segments: u32,
+    /// Edges tested.
+    pub edges_tested: u32,
+    /// Patches tested.
+    pub patches_tested: u32,
+    /// Patches that were not culled.
+    pub patches_accepted: u32,
+    /// Super-patches tested.
+    pub super_patches_tested: u32,
+    /// Super-patches that were not culled.
+    pub super_patches_accepted: u32,
+    /// Entries of [`Content::patches`](crate::Content::patches) that were not culled: further pieces of a
+    /// patch too, and edges that no patch holds.
+    pub groups_accepted: u32,
+    /// Mesh workgroups that task shaders launched.
+    pub mesh_workgroups: u32,
+    /// Mesh workgroups without a contour edge among their edges.
+    pub idle_mesh_workgroups: u32,
+}
+
 /// What was counted since extraction began: pairs of a low and a high word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]

@@ -29,19 +29,31 @@
 //! ```
 
 mod content;
+mod draw_plan;
 mod edge;
 mod frame;
 mod layout;
+mod mesh_sources;
+mod placement;
+mod plan;
 mod sources;
+mod statistics;
+mod style;
 
-pub use content::{Chunk, Content, MAX_PIECE};
+pub use content::{Chunk, Content, ContentEdge, MAX_GROUP, MAX_PIECE};
+pub use draw_plan::{Draw, DrawLimits, DrawPlan};
 pub use edge::{EdgeEnds, EdgePlanes};
 pub use frame::Frame;
 pub use layout::{
-    Arguments, Counters, Group, Part, PlacedSegment, ROW, Raster, SEGMENTS_PER_WORKGROUP, Segment,
-    Stroke, Totals, Transform, Work,
+    Arguments, Counters, DrawCounters, Group, Part, PlacedSegment, ROW, Raster,
+    SEGMENTS_PER_WORKGROUP, Segment, Stroke, Totals, Transform, Work,
 };
+pub use mesh_sources::{BLOCK_PATCHES, Culling, Emitted, MeshShape, mesh_source};
+pub use placement::{Placement, place};
+pub use plan::{Dispatch, Method, Plan, PlanLimits, Stage};
 pub use sources::{
     BRUTE_FORCE, CONTOUR, DEPTH, INK, LINES, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY,
-    WIDTHS, prelude,
+    THIN_LINES, WIDTHS, prelude,
 };
+pub use statistics::Statistics;
+pub use style::{DepthOrder, LineStyle, View, divide_by_alpha};

@@ -20,6 +20,7 @@ macro_rules! both {
                 include_str!("../shared/contour.wgsl"),
                 include_str!("../shared/segment.wgsl"),
                 include_str!("../shared/work.wgsl"),
+                include_str!("../shared/counters.wgsl"),
                 include_str!("../shared/edges.wgsl"),
                 include_str!("../shared/append_workgroup.wgsl"),
                 $(include_str!($file)),+
@@ -28,6 +29,7 @@ macro_rules! both {
                 include_str!("../shared/contour.wgsl"),
                 include_str!("../shared/segment.wgsl"),
                 include_str!("../shared/work.wgsl"),
+                include_str!("../shared/counters.wgsl"),
                 include_str!("../shared/edges.wgsl"),
                 include_str!("../shared/append_subgroup.wgsl"),
                 $(include_str!($file)),+
@@ -40,15 +42,18 @@ macro_rules! both {
 pub const BRUTE_FORCE: [&str; 2] = both!("../brute_force.wgsl");
 
 /// Entry point `patches_and_edges`.
-pub const PATCHES: [&str; 2] = both!("../shared/survivors.wgsl", "../patches.wgsl");
+pub const PATCHES: [&str; 2] =
+    both!("../shared/group.wgsl", "../shared/survivors.wgsl", "../patches.wgsl");
 
 /// Entry point `super_patches_to_edges`.
-pub const SUPER_PATCHES: [&str; 2] = both!("../shared/survivors.wgsl", "../super_patches.wgsl");
+pub const SUPER_PATCHES: [&str; 2] =
+    both!("../shared/group.wgsl", "../shared/survivors.wgsl", "../super_patches.wgsl");
 
 /// Entry point `tally`.
 pub const TALLY: &str = concat!(
     include_str!("../shared/segment.wgsl"),
     include_str!("../shared/work.wgsl"),
+    include_str!("../shared/counters.wgsl"),
     include_str!("../tally.wgsl"),
 );
 
@@ -64,7 +69,18 @@ pub const DEPTH: &str =
 pub const LINES: &str = concat!(
     include_str!("../shared/segment.wgsl"),
     include_str!("../shared/stroke.wgsl"),
+    include_str!("../shared/clip.wgsl"),
+    include_str!("../shared/strokes.wgsl"),
     include_str!("../lines.wgsl"),
+);
+
+/// Entry points `line_vertex` and `line_color`.
+pub const THIN_LINES: &str = concat!(
+    include_str!("../shared/segment.wgsl"),
+    include_str!("../shared/stroke.wgsl"),
+    include_str!("../shared/clip.wgsl"),
+    include_str!("../thin_lines.wgsl"),
+    include_str!("../shared/line_color.wgsl"),
 );
 
 /// Entry points `whole_screen` and `ink`.

@@ -3,7 +3,7 @@
 use drypoint_bounds::DoubleCone;
 use drypoint_fusion::CostModel;
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, shapes};
-use drypoint_shaders::{Content, EdgePlanes, Group, MAX_PIECE};
+use drypoint_shaders::{Content, ContentEdge, EdgePlanes, Group, MAX_PIECE};
 
 #[test]
 fn the_cost_model_for_gpus_is_what_shaders_read() {
@@ -18,7 +18,7 @@ fn groups_follow_one_another_and_the_rest_is_always_tested() {
     let adjacency = MeshAdjacency::new(&mesh);
     let mut edges: Vec<_> = adjacency.edges(EdgeFilter::Convex).collect();
     edges.reverse();
-    let wings = edges.iter().map(|&edge| (&adjacency.wings()[edge.index()], edge));
+    let wings = edges.iter().map(|&edge| ContentEdge::new(&adjacency, edge));
     let bound = DoubleCone { apex_distance: 0.25, tan_squared: 0.5, ..DoubleCone::ALWAYS };
     let long = MAX_PIECE + 1;
     let content = Content::with_groups(mesh.positions(), wings, [(bound, 3), (bound, long)]);
@@ -38,6 +38,6 @@ fn groups_of_too_many_edges_are_refused() {
     let mesh = shapes::bumpy_sphere(500);
     let adjacency = MeshAdjacency::new(&mesh);
     let edges = adjacency.edges(EdgeFilter::Convex).take(5);
-    let wings: Vec<_> = edges.map(|edge| (&adjacency.wings()[edge.index()], edge)).collect();
+    let wings: Vec<_> = edges.map(|edge| ContentEdge::new(&adjacency, edge)).collect();
     Content::with_groups(mesh.positions(), wings.into_iter(), [(DoubleCone::ALWAYS, 6)]);
 }

@@ -4,9 +4,10 @@ use std::mem::offset_of;
 
 use drypoint_bounds::{DoubleCone, MIN_CLEARANCE};
 use drypoint_shaders::{
-    Arguments, BRUTE_FORCE, CONTOUR, Counters, DEPTH, EdgeEnds, EdgePlanes, Group, INK, LINES,
-    PATCHES, POSITIONS, Part, PlacedSegment, ROW, Raster, SEGMENTS_PER_WORKGROUP, SUPER_PATCHES,
-    Segment, Stroke, TALLY, Totals, Transform, WIDTHS, Work, prelude,
+    Arguments, BRUTE_FORCE, CONTOUR, Counters, Culling, DEPTH, DrawCounters, EdgeEnds, EdgePlanes,
+    Emitted, Group, INK, LINES, MeshShape, PATCHES, POSITIONS, Part, PlacedSegment, ROW, Raster,
+    SEGMENTS_PER_WORKGROUP, SUPER_PATCHES, Segment, Stroke, TALLY, THIN_LINES, Totals, Transform,
+    WIDTHS, Work, mesh_source, prelude,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -18,7 +19,8 @@ fn parse(source: &str) -> naga::Module {
 fn validate(source: &str, capabilities: Capabilities) -> naga::Module {
     let module = parse(source);
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
-    validator.subgroup_stages(naga::valid::ShaderStages::COMPUTE);
+    use naga::valid::ShaderStages;
+    validator.subgroup_stages(ShaderStages::COMPUTE | ShaderStages::TASK | ShaderStages::MESH);
     validator.subgroup_operations(naga::valid::SubgroupOperationSet::all());
     let result = validator.validate(&module);
     result.unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
@@ -31,7 +33,9 @@ fn plain() -> Vec<String> {
     let extraction = widths.flat_map(|width| {
         [BRUTE_FORCE[0], PATCHES[0], SUPER_PATCHES[0]].map(|source| prelude(width) + source)
     });
-    extraction.chain([CONTOUR, TALLY, POSITIONS, DEPTH, LINES, INK].map(str::to_owned)).collect()
+    extraction
+        .chain([CONTOUR, TALLY, POSITIONS, DEPTH, LINES, THIN_LINES, INK].map(str::to_owned))
+        .collect()
 }
 
 #[test]
@@ -45,6 +49,26 @@ fn sources_are_valid_without_optional_features() {
 fn subgroup_variants_need_nothing_but_subgroups() {
     for source in [BRUTE_FORCE[1], PATCHES[1], SUPER_PATCHES[1]] {
         validate(&(prelude(64) + source), Capabilities::SUBGROUP);
+    }
+}
+
+/// Every source for mesh shaders, complete.
+fn meshes() -> impl Iterator<Item = String> {
+    let cullings = [Culling::Nothing, Culling::Patches, Culling::SuperPatches].into_iter();
+    let kinds = cullings.flat_map(|c| [Emitted::Lines, Emitted::Strokes].map(|e| (c, e)));
+    kinds.flat_map(|(culling, emitted)| {
+        [[32, 32], [64, 64], [128, 16]].map(|[task_width, edges_per_workgroup]| {
+            let records = task_width == 64;
+            let shape = MeshShape { task_width, edges_per_workgroup, records };
+            shape.prelude(culling) + mesh_source(culling, emitted)
+        })
+    })
+}
+
+#[test]
+fn mesh_shaders_need_nothing_but_subgroups() {
+    for source in meshes() {
+        validate(&source, Capabilities::MESH_SHADER | Capabilities::SUBGROUP);
     }
 }
 
@@ -98,7 +122,7 @@ fn structs_have_the_same_layout_on_both_sides() {
     let patches = &(prelude(64) + PATCHES[0]);
     check!(patches, DoubleCone { center, apex_distance, axis, tan_squared });
     check!(patches, EdgePlanes { left, right });
-    check!(patches, EdgeEnds { from_vertex, to_vertex, edge });
+    check!(patches, EdgeEnds { from_vertex, to_vertex, edge, edge_class });
     check!(patches, Group { bound, first, count, part, weight });
     check!(patches, Segment { from_vertex, to_vertex, placement, edge });
     check!(
@@ -142,6 +166,25 @@ fn structs_have_the_same_layout_on_both_sides() {
     check!(POSITIONS, Transform { x, y, z });
     check!(DEPTH, Part { part, part_count });
     check!(LINES, Raster { size, depth_sign, depth_step });
+}
+
+#[test]
+fn counters_of_draws_have_the_same_layout_on_both_sides() {
+    let draws = &meshes().next().expect("there are mesh shaders");
+    check!(
+        draws,
+        DrawCounters {
+            segments,
+            edges_tested,
+            patches_tested,
+            patches_accepted,
+            super_patches_tested,
+            super_patches_accepted,
+            groups_accepted,
+            mesh_workgroups,
+            idle_mesh_workgroups,
+        }
+    );
 }
 
 /// A uniform ends with padding, which WGSL does not name.
@@ -193,7 +236,7 @@ fn constants_are_the_same_on_both_sides() {
 fn no_struct_is_written_twice() {
     let mut seen = std::collections::BTreeMap::new();
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    for folder in [folder.to_owned(), folder.join("shared")] {
+    for folder in [folder.to_owned(), folder.join("shared"), folder.join("mesh")] {
         for entry in std::fs::read_dir(folder).expect("it can be listed") {
             let path = entry.expect("it can be listed").path();
             if path.extension().is_none_or(|extension| extension != "wgsl") {
@@ -201,8 +244,8 @@ fn no_struct_is_written_twice() {
             }
             let text = std::fs::read_to_string(&path).expect("it can be read");
             for line in text.lines().filter(|line| line.starts_with("struct ")) {
-                // One for each way of appending.
-                if !line.starts_with("struct Lane ") {
+                // One for each way of appending, and of emitting.
+                if !["struct Lane ", "struct Output "].iter().any(|known| line.starts_with(known)) {
                     let first = seen.insert(line.to_owned(), path.clone());
                     assert_eq!(first, None, "{line} in {}", path.display());
                 }

@@ -49,7 +49,7 @@ impl CostModel {
     /// `drypoint-wgpu`, from what its shaders read and not from times, which were not measured on hardware yet. A patch test reads 48 bytes and an edge test 32, once each and in the
     /// order of memory, hence t_P; the paper measured 1.363. Edges of all survivors of a workgroup are
     /// dealt out to its lanes one after the other, so that no block is left half empty, and a survivor costs
-    /// nothing beside its edges. Another 12 bytes are read for a contour edge, which is the same for any
+    /// nothing beside its edges. Another 16 bytes are read for a contour edge, which is the same for any
     /// patches.
     pub const GPU: Self = Self { patch_test: 48.0 / 32.0, ..Self::PAPER };
 

@@ -1,6 +1,9 @@
 //! What is found of one model, and the memory that it takes.
 
-use drypoint_shaders::{Arguments, Counters, Segment, Totals, Transform, Work};
+use drypoint_shaders::{
+    Arguments, Counters, Dispatch, Method, Placement, Plan, PlanLimits, Segment, Statistics,
+    Totals, Transform, Work, place,
+};
 use glam::Vec4;
 use wgpu::BufferUsages;
 
@@ -9,11 +12,8 @@ use crate::bindings::bind;
 use crate::device::{allow, buffer, checked};
 use crate::extractor::Extractor;
 use crate::model::Model;
-use crate::placement::Placement;
-use crate::plan::{Dispatch, Method, Plan, PlanLimits};
 use crate::readback::Readback;
 use crate::staging::Staging;
-use crate::statistics::Statistics;
 
 /// What there is room for. One buffer holds the segments, which on devices with common limits of 128 MiB are
 /// 8.4 million: where more are to be expected, share instances out to several [`Contours`] of one model.
@@ -158,7 +158,9 @@ impl Contours {
     ) -> Result<(), Error> {
         self.check(placements, method)?;
         self.dispatches.clear();
-        self.place(placements).inspect_err(|_| self.transforms.clear())?;
+        let frames = &self.model.content.frames;
+        place(frames, placements, &mut self.viewpoints, &mut self.transforms)
+            .map_err(|index| Error::SingularPlacement { index })?;
         #[expect(clippy::cast_possible_truncation, reason = "no more than the capacity, a u32")]
         let instances = (placements.len() / self.model.content.frames.len()) as u32;
         plan(&self.model, method, instances, self.capacity, self.limits)
@@ -180,21 +182,6 @@ impl Contours {
         }
         for counted in [&self.counters, &self.totals, &self.arguments] {
             encoder.clear_buffer(counted, 0, None);
-        }
-        Ok(())
-    }
-
-    /// Carries viewpoints into the frames of parts.
-    fn place(&mut self, placements: &[Placement]) -> Result<(), Error> {
-        self.viewpoints.clear();
-        self.transforms.clear();
-        let frames = &self.model.content.frames;
-        for (index, placement) in placements.iter().enumerate() {
-            let frame = &frames[index % frames.len()];
-            let viewpoint =
-                placement.viewpoint_in(frame).ok_or(Error::SingularPlacement { index })?;
-            self.viewpoints.push(viewpoint);
-            self.transforms.push(Transform::from(placement.to_scene));
         }
         Ok(())
     }
@@ -306,7 +293,9 @@ fn plan(
     capacity: Capacity,
     limits: PlanLimits,
 ) -> Plan<'_> {
-    Plan { model: &model.content, method, instances, segment_capacity: capacity.segments, limits }
+    let (chunks, part_count) = (&model.content.chunks, model.part_count());
+    let segment_capacity = capacity.segments;
+    Plan { chunks, part_count, method, instances, segment_capacity, limits }
 }
 
 fn most_dispatches(model: &Model, capacity: Capacity, limits: PlanLimits) -> usize {

@@ -1,7 +1,7 @@
 //! Depths of the surfaces that hide lines.
 
 use drypoint_mesh::Mesh;
-use drypoint_shaders::{DEPTH, Part};
+use drypoint_shaders::{DEPTH, DepthOrder, Part};
 use glam::Mat4;
 use wgpu::BufferUsages;
 
@@ -9,7 +9,7 @@ use crate::Error;
 use crate::bindings::{READ, bind, layout, uniform};
 use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
-use crate::raster::{DepthOrder, Drawing};
+use crate::raster::{Drawing, compare};
 use crate::staging::Staging;
 
 const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
@@ -76,7 +76,7 @@ impl DepthPass {
             depth: Some(wgpu::DepthStencilState {
                 format,
                 depth_write_enabled: Some(true),
-                depth_compare: Some(order.compare()),
+                depth_compare: Some(compare(order)),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),

@@ -1,14 +1,14 @@
 //! Pipelines, and how a frame's work is recorded with them.
 
 use drypoint_shaders::{
-    BRUTE_FORCE, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY, WIDTHS, Work, prelude,
+    BRUTE_FORCE, PATCHES, POSITIONS, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS,
+    Work, prelude,
 };
 
 use crate::Error;
 use crate::bindings::{READ, WRITE, layout, uniform};
 use crate::contours::Contours;
 use crate::device::checked;
-use crate::plan::{PlanLimits, Stage};
 
 /// How shaders are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +120,7 @@ impl Extractor {
             };
             let offset = contours.work_offset(index);
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &contours.model().content.chunks[dispatch.chunk].bindings, &[]);
+            pass.set_bind_group(0, &contours.model().content.bindings[dispatch.chunk], &[]);
             pass.set_bind_group(1, &contours.work_bindings, &[offset]);
             pass.dispatch_workgroups(dispatch.grid[0], dispatch.grid[1], 1);
             pass.set_pipeline(&self.tally);

@@ -64,26 +64,21 @@ mod line_pass;
 mod model;
 mod picture;
 mod placed;
-mod placement;
-mod plan;
 mod raster;
 mod readback;
 mod staging;
-mod statistics;
 mod timer;
 
 pub use contours::{Capacity, Contours};
 pub use depth_pass::{DepthPass, Surface};
 pub use device::{Gpu, WANTED_FEATURES};
-pub use drypoint_shaders::{Arguments, PlacedSegment, Segment};
+pub use drypoint_shaders::{
+    Arguments, DepthOrder, LineStyle, Method, PlacedSegment, Placement, Segment, Statistics, View,
+};
 pub use error::Error;
 pub use extractor::{Extractor, ExtractorOptions};
-pub use line_pass::{LinePass, LineStyle, LineTarget, Lines};
+pub use line_pass::{LinePass, LineTarget, Lines};
 pub use model::Model;
-pub use picture::{Picture, Subject, View};
+pub use picture::{Picture, Subject};
 pub use placed::PlacedContours;
-pub use placement::Placement;
-pub use plan::Method;
-pub use raster::DepthOrder;
-pub use statistics::Statistics;
 pub use timer::Timer;

@@ -1,33 +1,17 @@
 //! Segments as lines on the screen.
 
-use drypoint_shaders::{Arguments, INK, LINES, Raster, Stroke};
-use glam::{Mat4, Vec2, Vec4};
+use drypoint_shaders::{Arguments, DepthOrder, INK, LINES, LineStyle, Raster, Stroke};
+use glam::{Mat4, Vec2};
 use wgpu::BufferUsages;
 
 use crate::Error;
 use crate::bindings::{READ, bind, layout, texture, uniform};
 use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
-use crate::raster::{DepthOrder, Drawing};
+use crate::raster::Drawing;
 use crate::staging::Staging;
 
 const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
-
-/// How lines look.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStyle {
-    /// In pixels, above 0. Lines thinner than a pixel are drawn paler.
-    pub width: f32,
-    /// Red, green, blue and alpha from 0 to 1, not multiplied; linear where the target's format is sRGB.
-    pub color: [f32; 4],
-}
-
-impl Default for LineStyle {
-    /// Black, 1.5 pixels wide.
-    fn default() -> Self {
-        Self { width: 1.5, color: [0.0, 0.0, 0.0, 1.0] }
-    }
-}
 
 /// Draws the segments of [`Contours`] as lines of some pixels in width, with smooth edges and round ends,
 /// where no surface hides them.
@@ -112,10 +96,7 @@ impl LinePass {
         scene_to_clip: Mat4,
         style: &LineStyle,
     ) -> Result<(), Error> {
-        let [red, green, blue, alpha] = style.color;
-        let color = Vec4::new(red * alpha, green * alpha, blue * alpha, alpha);
-        let half_width = 0.5 * style.width.max(0.0);
-        let stroke = Stroke { scene_to_clip, color, half_width, padding: [0.0; 3] };
+        let stroke = style.stroke(scene_to_clip);
         let bytes = bytemuck::bytes_of(&stroke);
         self.staging.write(&self.device, encoder, &self.stroke, &[(0, bytes)])
     }

@@ -13,7 +13,7 @@ use crate::bindings::bind;
 use crate::device::{filled, largest_storage};
 use crate::extractor::Extractor;
 
-/// Edges, planes and patches of a model in GPU memory: 44 bytes an edge, 12 a vertex and 48 a patch.
+/// Edges, planes and patches of a model in GPU memory: 48 bytes an edge, 12 a vertex and 48 a patch.
 ///
 /// A model of several rigid parts has a patch set for each, and is placed part by part. A clone is the same
 /// model; memory is freed with the last.
@@ -26,17 +26,13 @@ pub struct Model {
 #[derive(Debug)]
 pub(crate) struct Uploaded {
     pub(crate) frames: Vec<Frame>,
-    pub(crate) chunks: Vec<UploadedChunk>,
+    /// Pieces that fit the device's bindings ...
+    pub(crate) chunks: Vec<Chunk>,
+    /// ... and these bindings.
+    pub(crate) bindings: Vec<wgpu::BindGroup>,
     pub(crate) positions: wgpu::Buffer,
     pub(crate) edge_count: u64,
     pub(crate) has_patches: bool,
-}
-
-/// A [`Chunk`] of the model, which fits the device's bindings.
-#[derive(Debug)]
-pub(crate) struct UploadedChunk {
-    pub(crate) chunk: Chunk,
-    pub(crate) bindings: wgpu::BindGroup,
 }
 
 impl Model {
@@ -80,15 +76,13 @@ impl Model {
         let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
         let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
         let chunks = content.chunks(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
-        let upload = |chunk: Chunk| {
-            let bindings = upload_chunk(extractor, content, &chunk)?;
-            Ok(UploadedChunk { chunk, bindings })
-        };
-        let chunks = chunks.into_iter().map(upload).collect::<Result<_, _>>()?;
+        let upload = |chunk: &Chunk| upload_chunk(extractor, content, chunk);
+        let bindings = chunks.iter().map(upload).collect::<Result<_, _>>()?;
         Ok(Self {
             content: Arc::new(Uploaded {
                 frames: content.frames.clone(),
                 chunks,
+                bindings,
                 positions,
                 edge_count: u64::from(content.edge_count()),
                 has_patches: !content.patches.is_empty(),

@@ -1,13 +1,12 @@
 //! A picture that no window shows.
 
-use glam::Mat4;
+use drypoint_shaders::{DepthOrder, View, divide_by_alpha};
 
 use crate::Error;
 use crate::contours::{Contours, read};
 use crate::depth_pass::{DepthPass, Surface};
 use crate::device::checked;
-use crate::line_pass::{LinePass, LineStyle, LineTarget, Lines};
-use crate::raster::DepthOrder;
+use crate::line_pass::{LinePass, LineTarget, Lines};
 
 /// Lines on a background, off screen: the passes and textures that this takes, 9 bytes a pixel and as much
 /// again to read them.
@@ -22,18 +21,6 @@ pub struct Picture {
     target: LineTarget,
     depth_pass: DepthPass,
     line_pass: LinePass,
-}
-
-/// How a scene is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// From the space of the scene to clip space: x and y from -w to w, y up, and z from 0 to w. Perspective
-    /// or orthographic.
-    pub scene_to_clip: Mat4,
-    /// Red, green, blue and alpha from 0 to 1, not multiplied. As the eye sees them: sRGB.
-    pub background: [f32; 4],
-    /// As the background.
-    pub lines: LineStyle,
 }
 
 /// What is drawn of one model: its contours, the triangles that hide lines, and the lines.
@@ -104,9 +91,8 @@ impl Picture {
         self.draw_depth(encoder, subjects);
         let lines: Vec<&Lines> = subjects.iter().map(|subject| subject.lines).collect();
         self.line_pass.cover(encoder, &self.target, &lines);
-        let [red, green, blue, alpha] = view.background.map(f64::from);
-        let background =
-            wgpu::Color { r: red * alpha, g: green * alpha, b: blue * alpha, a: alpha };
+        let [r, g, b, a] = view.background_times_alpha().map(f64::from);
+        let background = wgpu::Color { r, g, b, a };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("drypoint picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -191,12 +177,4 @@ fn texture(
         view_formats: &[],
     };
     checked(device, "a picture", || device.create_texture(&descriptor))
-}
-
-fn divide_by_alpha(pixel: &mut [u8; 4]) {
-    let alpha = u16::from(pixel[3]);
-    for color in &mut pixel[..3] {
-        let divided = (255 * u16::from(*color) + alpha / 2).checked_div(alpha).unwrap_or(0);
-        *color = u8::try_from(divided).unwrap_or(u8::MAX);
-    }
 }

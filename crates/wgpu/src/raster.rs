@@ -1,37 +1,11 @@
 //! What the pipelines that draw have in common.
 
-/// Which way depths run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum DepthOrder {
-    /// From 0 at the near plane to 1 at the far plane, cleared to 1.
-    #[default]
-    Standard,
-    /// From 1 at the near plane to 0 at the far plane or at infinity, cleared to 0: exact far away too, in
-    /// a texture of f32.
-    Reversed,
-}
+use drypoint_shaders::DepthOrder;
 
-impl DepthOrder {
-    /// What a depth texture is cleared to: farther than all.
-    pub const fn cleared(self) -> f32 {
-        match self {
-            Self::Standard => 1.0,
-            Self::Reversed => 0.0,
-        }
-    }
-
-    pub(crate) const fn compare(self) -> wgpu::CompareFunction {
-        match self {
-            Self::Standard => wgpu::CompareFunction::LessEqual,
-            Self::Reversed => wgpu::CompareFunction::GreaterEqual,
-        }
-    }
-
-    pub(crate) const fn sign(self) -> f32 {
-        match self {
-            Self::Standard => 1.0,
-            Self::Reversed => -1.0,
-        }
+pub(crate) const fn compare(order: DepthOrder) -> wgpu::CompareFunction {
+    match order {
+        DepthOrder::Standard => wgpu::CompareFunction::LessEqual,
+        DepthOrder::Reversed => wgpu::CompareFunction::GreaterEqual,
     }
 }
 

@@ -9,34 +9,8 @@ use drypoint_wgpu::{
     Capacity, Contours, Error, Extractor, ExtractorOptions, Gpu, Method, Model, PlacedContours,
     Placement,
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use support::{Expected, extract, gpu, gpu_with, patches};
-
-/// Placements that are moved, turned, mirrored and stretched, seen from afar, from close by, from inside and
-/// from a direction.
-fn placements(mesh: &Mesh) -> Vec<Placement> {
-    let unit = mesh.bounds().map_or(1.0, |bounds| bounds.half_longest_side().max(1e-30));
-    let center = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.center());
-    let moved = DAffine3::from_translation(-center);
-    let turned = DAffine3::from_quat(DQuat::from_rotation_x(0.7)) * moved;
-    let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * turned;
-    let stretched = DAffine3::from_mat3(DMat3::from_cols(
-        DVec3::new(2.0, 0.3, 0.0),
-        DVec3::new(0.0, 0.5, 0.1),
-        DVec3::new(-0.2, 0.0, -3.0),
-    )) * moved;
-    let mut all = Vec::new();
-    for to_scene in [moved, turned, mirrored, stretched] {
-        for from in
-            [DVec3::new(7.0, 3.0, 1.0), DVec3::new(0.4, 0.9, 0.7), DVec3::new(0.05, 0.01, 0.02)]
-        {
-            all.push(Placement { to_scene, viewpoint: Viewpoint::at(from * unit) });
-        }
-        let viewpoint = Viewpoint::from_direction(DVec3::new(0.3, -0.8, 0.55));
-        all.push(Placement { to_scene, viewpoint });
-    }
-    all
-}
+use glam::{DAffine3, DVec3};
+use support::{Expected, extract, gpu, gpu_with, patches, placements};
 
 /// Extracts with both methods and compares both.
 #[track_caller]

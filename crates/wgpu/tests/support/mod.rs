@@ -1,15 +1,14 @@
 //! A device with the validation layers on, and what they say.
 #![allow(dead_code, reason = "each test program uses what it needs")]
 
-use std::collections::BTreeSet;
-use std::ops::ControlFlow;
-use std::path::PathBuf;
+#[path = "../../../../shaders/tests/support/mod.rs"]
+mod shared;
+
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
-use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, is_contour};
-use drypoint_shaders::{EdgePlanes, Frame};
 use drypoint_wgpu::{Contours, Error, Extractor, Gpu, Method, Placement, Segment};
+
+pub(crate) use shared::{Expected, example, is_without_gpu, patches, placements};
 
 /// Warnings and errors of wgpu and of the validation layers, all tests of one program together.
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
@@ -50,12 +49,6 @@ pub(crate) fn expect_silence() {
     assert!(said.is_empty(), "the validation layers have something to say: {said:#?}");
 }
 
-/// Whether the machine says that it has no GPU, not even software: tests are passed over then. Without
-/// that, having none is a failure.
-pub(crate) fn is_without_gpu() -> bool {
-    std::env::var_os("DRYPOINT_NO_GPU").is_some_and(|value| value == "1")
-}
-
 /// A device with validation, and limits lowered by `adjust`.
 pub(crate) fn gpu_with(adjust: &dyn Fn(&mut wgpu::Limits)) -> Gpu {
     static LISTENING: OnceLock<()> = OnceLock::new();
@@ -79,23 +72,6 @@ pub(crate) fn gpu() -> Gpu {
     gpu_with(&|_| {})
 }
 
-/// An example, which cargo builds beside the tests.
-pub(crate) fn example(name: &str) -> PathBuf {
-    let test = std::env::current_exe().expect("this runs from a file");
-    let folder = test.parent().and_then(|deps| deps.parent()).expect("tests are in target/*/deps");
-    let example = folder.join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
-    assert!(example.exists(), "build it first: cargo build -p drypoint-wgpu --example {name}");
-    example
-}
-
-/// Patches of all edges.
-pub(crate) fn patches(mesh: &Mesh, levels: Levels) -> PatchSet {
-    let adjacency = MeshAdjacency::new(mesh);
-    let params = FusionParams { levels, ..FusionParams::FAST };
-    fuse(mesh, &adjacency, EdgeFilter::All, &params, &|_| ControlFlow::Continue(()))
-        .expect("nothing stops it")
-}
-
 /// Records one extraction, submits it, and reads what it finds, sorted.
 pub(crate) fn extract(
     gpu: &Gpu,
@@ -112,55 +88,4 @@ pub(crate) fn extract(
     let mut segments = contours.read_segments(&gpu.queue)?;
     segments.sort_unstable();
     Ok(segments)
-}
-
-/// What brute force with exact predicates says about placements of a patch set's edges.
-pub(crate) struct Expected {
-    /// Contour edges that f32 must find too.
-    sure: BTreeSet<Segment>,
-    /// Edges with a face within the margin: found or not, as it comes.
-    doubtful: BTreeSet<Segment>,
-}
-
-impl Expected {
-    pub(crate) fn new(set: &PatchSet, placements: &[Placement]) -> Self {
-        let (mut sure, mut doubtful) = (BTreeSet::new(), BTreeSet::new());
-        let edges = || set.wings().iter().zip(set.edge_ids());
-        let frame = Frame::new(
-            edges()
-                .flat_map(|(w, _)| [w.tail, w.head, w.left, w.right])
-                .map(|vertex| set.positions()[vertex as usize]),
-        );
-        let planes: Vec<_> =
-            edges().map(|(wing, _)| EdgePlanes::in_f64(set.positions(), wing, &frame)).collect();
-        for (index, placement) in (0..).zip(placements) {
-            let viewpoint = placement.viewpoint_of_part().expect("it has an inverse");
-            let seen = frame.viewpoint(viewpoint);
-            for ((wing, &edge), planes) in edges().zip(&planes) {
-                let [from_vertex, to_vertex] = wing.ends();
-                let segment = Segment { from_vertex, to_vertex, placement: index, edge };
-                if EdgePlanes::is_doubtful(planes, seen) {
-                    doubtful.insert(segment);
-                } else if is_contour(set.positions(), wing, viewpoint) {
-                    sure.insert(segment);
-                }
-            }
-        }
-        Self { sure, doubtful }
-    }
-
-    /// Number of contour edges that are sure, and of doubtful edges.
-    pub(crate) fn counts(&self) -> [usize; 2] {
-        [self.sure.len(), self.doubtful.len()]
-    }
-
-    /// Compares sorted segments.
-    #[track_caller]
-    pub(crate) fn compare(&self, found: &[Segment], what: &str) {
-        assert!(found.is_sorted_by(|a, b| a < b), "{what}: a segment is there twice");
-        let missing = self.sure.iter().find(|segment| found.binary_search(segment).is_err());
-        assert_eq!(missing, None, "{what}: it is missing");
-        let extra = found.iter().find(|s| !self.sure.contains(s) && !self.doubtful.contains(s));
-        assert_eq!(extra, None, "{what}: it is no contour edge");
-    }
 }

@@ -3,7 +3,7 @@
 use drypoint_baselines::Meshlets;
 use drypoint_fusion::{CostModel, FusionParams, Levels};
 use drypoint_mesh::{Mesh, MeshAdjacency};
-use drypoint_shaders::Content;
+use drypoint_shaders::{Content, ContentEdge};
 use drypoint_tests::judges::Judge;
 use drypoint_tests::report::{BRUTE_FORCE, INSTANCES, MESHLETS, OURS, TB24, TWO_LEVELS};
 use drypoint_wgpu::{Capacity, Contours, Error, Extractor, Method, Model, Placement};
@@ -80,7 +80,7 @@ pub(super) fn groupings<'a>(
         groupings.push(patches(TB24, FusionParams::PAPER)?);
     }
     let meshlets = Meshlets::new(mesh, adjacency, FILTER, &Default::default());
-    let edges = meshlets.edge_ids().iter().map(|&edge| (&adjacency.wings()[edge.index()], edge));
+    let edges = meshlets.edge_ids().iter().map(|&edge| ContentEdge::new(adjacency, edge));
     let groups = meshlets.bounds().zip(meshlets.edge_counts());
     let content = Content::with_groups(mesh.positions(), edges, groups);
     groupings.push(Grouped { name: MESHLETS, content, judge: Some(Box::new(meshlets)) });

@@ -1,6 +1,6 @@
 //! What was counted.
 
-use drypoint_shaders::Totals;
+use crate::Totals;
 
 /// What one extraction found and tested, all instances together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +22,8 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    pub(crate) fn new(totals: &Totals, capacity: u32) -> Self {
+    /// What a compute pipeline has added up, with that much room for segments.
+    pub fn new(totals: &Totals, capacity: u32) -> Self {
         let number = |[low, high]: [u32; 2]| u64::from(low) | u64::from(high) << 32;
         Self {
             segments: number(totals.segments),

@@ -1,8 +1,7 @@
 //! Cuts work into dispatches that a device allows.
 
-use drypoint_shaders::Work;
-
-use crate::model::Uploaded;
+use crate::Chunk;
+use crate::layout::Work;
 
 /// How contour edges are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,33 +15,38 @@ pub enum Method {
 
 /// What a dispatch begins with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub enum Stage {
+    /// Every edge is tested.
     Edges,
+    /// Patches, then the edges of those that survive.
     Patches,
+    /// Super-patches, their patches, and these patches' edges.
     SuperPatches,
 }
 
 /// One dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Dispatch {
-    pub(crate) stage: Stage,
+pub struct Dispatch {
+    /// What it begins with.
+    pub stage: Stage,
     /// The chunk of the model.
-    pub(crate) chunk: usize,
-    pub(crate) work: Work,
+    pub chunk: usize,
+    /// Its work.
+    pub work: Work,
     /// Workgroups along x and y.
-    pub(crate) grid: [u32; 2],
+    pub grid: [u32; 2],
 }
 
 /// What bounds a dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PlanLimits {
+pub struct PlanLimits {
     /// Lanes in a workgroup.
-    pub(crate) width: u32,
+    pub width: u32,
     /// Workgroups along one dimension.
-    pub(crate) row: u32,
+    pub row: u32,
     /// Edges of all instances, 8 GiB of planes: far less than counters of 32 bits hold, and than what takes so
     /// long that a system takes the GPU away.
-    pub(crate) edges: u32,
+    pub edges: u32,
 }
 
 /// Rounds of a workgroup's lanes in brute force: enough that starting it costs little.
@@ -56,19 +60,25 @@ const SUPER_PATCHES: u32 = 8;
 
 /// What is to be done for `instances` of a model.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plan<'a> {
-    pub(crate) model: &'a Uploaded,
-    pub(crate) method: Method,
-    pub(crate) instances: u32,
-    pub(crate) segment_capacity: u32,
-    pub(crate) limits: PlanLimits,
+pub struct Plan<'a> {
+    /// Pieces of the model.
+    pub chunks: &'a [Chunk],
+    /// Its rigid parts.
+    pub part_count: u32,
+    /// How contour edges are found.
+    pub method: Method,
+    /// Number of instances.
+    pub instances: u32,
+    /// Segments that fit the output.
+    pub segment_capacity: u32,
+    /// What bounds a dispatch.
+    pub limits: PlanLimits,
 }
 
 impl Plan<'_> {
     /// Hands its dispatches to `visit`, in order.
-    pub(crate) fn dispatches(&self, visit: &mut impl FnMut(Dispatch)) {
-        for (index, uploaded) in self.model.chunks.iter().enumerate() {
-            let chunk = &uploaded.chunk;
+    pub fn dispatches(&self, visit: &mut impl FnMut(Dispatch)) {
+        for (index, chunk) in self.chunks.iter().enumerate() {
             if self.method == Method::BruteForce {
                 for (part, edges) in &chunk.parts {
                     let items = [edges.start, edges.end - edges.start];
@@ -84,7 +94,7 @@ impl Plan<'_> {
     }
 
     /// Most dispatches that fewer instances or other shares could need: with the least for a workgroup.
-    pub(crate) fn most_dispatches(&self) -> usize {
+    pub fn most_dispatches(&self) -> usize {
         let mut count = 0;
         let limits = PlanLimits { width: 1, ..self.limits };
         Self { limits, ..*self }.dispatches(&mut |_| count += 1);
@@ -103,7 +113,7 @@ impl Plan<'_> {
         // Workgroups are numbered in 32 bits.
         let most_workgroups = (u64::from(self.limits.row).pow(2)).min(u64::from(u32::MAX / 2));
         let most_items = small(most_workgroups * u64::from(share));
-        let edges = &self.model.chunks[chunk].chunk.edges;
+        let edges = &self.chunks[chunk].edges;
         let most_instances = self.limits.edges / (edges.end - edges.start).max(1);
         for first_item in (first..first + count).step_by(most_items as usize) {
             let item_count = most_items.min(first + count - first_item);
@@ -119,7 +129,7 @@ impl Plan<'_> {
                     items_per_workgroup: share,
                     first_instance,
                     instance_count,
-                    part_count: small(self.model.frames.len() as u64),
+                    part_count: self.part_count,
                     part,
                     segment_capacity: self.segment_capacity,
                 };
@@ -152,6 +162,6 @@ fn count<T>(items: &[T]) -> u32 {
 }
 
 /// What is beyond a u32 is beyond any limit.
-fn small(number: u64) -> u32 {
+pub(crate) fn small(number: u64) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }

@@ -1,0 +1,231 @@
+//! Lines with width and smooth edges, where no surface hides them.
+
+use ash::vk;
+use drypoint_shaders::{Arguments, DepthOrder, INK, LINES, Raster, View};
+use glam::Vec2;
+
+use crate::binding::{Resource, Set};
+use crate::commands::{Commands, Use};
+use crate::depth_pass::{DepthPass, Found, Surface};
+use crate::look::{Look, uniform};
+use crate::memory::Image;
+use crate::mesh_pass::MeshPass;
+use crate::pipeline::{Blending, Drawing, Formats, Pipeline};
+use crate::rendering::{Rendering, Targets};
+use crate::shader::Shader;
+use crate::{Device, Error, layouts};
+
+/// Finds how much of each pixel visible contour edges cover, as strokes of some pixels in width, and inks that.
+/// Images of 5 bytes a pixel.
+///
+/// The lines are those of `drypoint-wgpu`'s `LinePass`, which tells how they are hidden; from compute
+/// shaders or from mesh shaders, they are the same.
+#[derive(Debug)]
+pub struct Canvas {
+    size: [u32; 2],
+    order: DepthOrder,
+    depth: Image,
+    coverage: Image,
+    depth_pass: DepthPass,
+    mesh_pass: MeshPass,
+    covering: Pipeline,
+    inking: Pipeline,
+    look: Look,
+    /// What strokes of vertex shaders bind beside the look, what those of mesh shaders bind with it, and what
+    /// inking binds.
+    sets: [Set; 3],
+}
+
+/// What is drawn of one model: its contours, and the triangles that hide lines.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// Prepared, and extracted if compute shaders find them.
+    pub contours: Found<'a>,
+    /// Made for them.
+    pub surface: &'a Surface,
+}
+
+const COVERAGE: vk::Format = vk::Format::R8_UNORM;
+const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+
+impl Canvas {
+    /// Of width and height in pixels, to be inked into color attachments of `format`.
+    ///
+    /// # Errors
+    /// [`Error::PictureSize`] if the device allows no image of that size, or if it has not enough memory.
+    pub fn new(
+        commands: &mut Commands,
+        size: [u32; 2],
+        order: DepthOrder,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
+        let device = &commands.device().clone();
+        check_size(device, size)?;
+        let usage = vk::ImageUsageFlags::SAMPLED;
+        let attached = usage | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let depth = Image::new(device, "depths", size, (DEPTH, attached))?;
+        let attached = usage | vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        let coverage = Image::new(device, "the coverage of lines", size, (COVERAGE, attached))?;
+        let raster = uniform(device, "a line target", size_of::<Raster>())?;
+        #[expect(clippy::cast_precision_loss, reason = "sides of images are exact in f32")]
+        let pixels = Vec2::new(size[0] as f32, size[1] as f32);
+        let target = Raster { size: pixels, depth_sign: order.sign(), depth_step: 0.0 };
+        commands.update(&raster, bytemuck::bytes_of(&target));
+        commands.barrier(Use::COPIED_TO, Use::READ_BY_DRAWING);
+        let stroke = layouts::stroke(device)?;
+        let look = Look::new(device, &stroke)?;
+        let target_layout = layouts::line_target(device)?;
+        let mesh_style = layouts::mesh_strokes(device)?;
+        let coverage_layout = layouts::coverage(device)?;
+        let target = [Resource::Buffer(&raster), Resource::Image(&depth)];
+        let style = [Resource::Buffer(look.buffer()), target[0], target[1]];
+        let sets = [
+            Set::new(&target_layout, "the bindings of a line target", &target)?,
+            Set::new(&mesh_style, "the bindings of strokes", &style)?,
+            Set::new(&coverage_layout, "the bindings of coverage", &[Resource::Image(&coverage)])?,
+        ];
+        Ok(Self {
+            size,
+            order,
+            depth_pass: DepthPass::new(device, DEPTH, order)?,
+            mesh_pass: MeshPass::strokes(device, &mesh_style, COVERAGE)?,
+            covering: covering(device)?,
+            inking: inking(device, format)?,
+            depth,
+            coverage,
+            look,
+            sets,
+        })
+    }
+
+    /// To make [`MeshContours`](crate::MeshContours) with that are drawn here.
+    pub fn mesh_pass(&self) -> &MeshPass {
+        &self.mesh_pass
+    }
+
+    /// Draws depths and strokes of `subjects` in place of what was there. Outside of rendering.
+    ///
+    /// # Errors
+    /// If something is of another device.
+    pub fn cover(
+        &self,
+        commands: &mut Commands,
+        view: &View,
+        subjects: &[Subject<'_>],
+    ) -> Result<(), Error> {
+        commands.check(self.mesh_pass.device(), "the canvas")?;
+        self.depth_pass.prepare(commands, view.scene_to_clip);
+        self.look.record(commands, view.scene_to_clip, &view.lines);
+        let undefined = vk::ImageLayout::UNDEFINED;
+        let to_test = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+        let to_draw = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
+        let to_read = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+        commands.transition(&self.depth, (Use::SAMPLED, undefined), (Use::DEPTH_TESTED, to_test));
+        let depth = Some((&self.depth, DEPTH, self.order));
+        {
+            let mut rendering = commands.render(&Targets { color: None, depth, size: self.size });
+            for Subject { contours, surface } in subjects {
+                self.depth_pass.record(&mut rendering, surface, *contours)?;
+            }
+        }
+        commands.transition(&self.depth, (Use::DEPTH_TESTED, to_test), (Use::SAMPLED, to_read));
+        commands.transition(&self.coverage, (Use::SAMPLED, undefined), (Use::DRAWN_TO, to_draw));
+        let color = Some((&self.coverage, COVERAGE, [0.0; 4]));
+        {
+            let mut rendering = commands.render(&Targets { color, depth: None, size: self.size });
+            for Subject { contours, .. } in subjects {
+                self.draw_strokes(&mut rendering, *contours)?;
+            }
+        }
+        commands.transition(&self.coverage, (Use::DRAWN_TO, to_draw), (Use::SAMPLED, to_read));
+        Ok(())
+    }
+
+    fn draw_strokes(
+        &self,
+        rendering: &mut Rendering<'_>,
+        contours: Found<'_>,
+    ) -> Result<(), Error> {
+        let [target, mesh_style, _] = &self.sets;
+        match contours {
+            Found::Mesh(contours) => self.mesh_pass.record_with(rendering, contours, mesh_style),
+            Found::Compute(contours) => {
+                let sets: [(&Set, &[u32]); 3] =
+                    [(self.look.set(), &[]), (target, &[]), (&contours.segment_set, &[])];
+                rendering.bind(&self.covering, "strokes", &sets)?;
+                rendering.draw_indirect(contours.arguments(), Arguments::QUADS);
+                Ok(())
+            }
+        }
+    }
+
+    /// Blends the color of the view's lines into what is rendered to, a color attachment as large as this and
+    /// nothing else, by what [`Canvas::cover`] drew. Colors are multiplied by their alpha.
+    ///
+    /// # Errors
+    /// If rendering is to something else, or of another device.
+    pub fn ink(&self, rendering: &mut Rendering<'_>) -> Result<(), Error> {
+        rendering.check(self.mesh_pass.device(), "the canvas")?;
+        let sets: [(&Set, &[u32]); 2] = [(self.look.set(), &[]), (&self.sets[2], &[])];
+        rendering.bind(&self.inking, "ink", &sets)?;
+        rendering.draw(3);
+        Ok(())
+    }
+}
+
+/// Fails if the device allows no image of that size.
+pub(crate) fn check_size(device: &Device, [width, height]: [u32; 2]) -> Result<(), Error> {
+    let limits = device.limits();
+    let limit = limits
+        .max_image_dimension2_d
+        .min(limits.max_framebuffer_width)
+        .min(limits.max_framebuffer_height)
+        .min(limits.max_viewport_dimensions[0])
+        .min(limits.max_viewport_dimensions[1]);
+    if [width, height].iter().all(|side| (1..=limit).contains(side)) {
+        return Ok(());
+    }
+    Err(Error::PictureSize { width, height, limit })
+}
+
+fn covering(device: &Device) -> Result<Pipeline, Error> {
+    let what = "strokes";
+    let shader = Shader::new(device, what, LINES)?;
+    let drawing = Drawing {
+        what,
+        stages: &[
+            (vk::ShaderStageFlags::VERTEX, &shader, "stroke_vertex"),
+            (vk::ShaderStageFlags::FRAGMENT, &shader, "stroke_coverage"),
+        ],
+        layouts: &[
+            &layouts::stroke(device)?,
+            &layouts::line_target(device)?,
+            &layouts::segments(device)?,
+        ],
+        has_positions: false,
+        topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
+        formats: Formats { color: Some(COVERAGE), depth: None },
+        blending: Blending::Larger,
+        depth: None,
+    };
+    drawing.pipeline(device)
+}
+
+fn inking(device: &Device, format: vk::Format) -> Result<Pipeline, Error> {
+    let what = "ink";
+    let shader = Shader::new(device, what, INK)?;
+    let drawing = Drawing {
+        what,
+        stages: &[
+            (vk::ShaderStageFlags::VERTEX, &shader, "whole_screen"),
+            (vk::ShaderStageFlags::FRAGMENT, &shader, "ink"),
+        ],
+        layouts: &[&layouts::stroke(device)?, &layouts::coverage(device)?],
+        has_positions: false,
+        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+        formats: Formats { color: Some(format), depth: None },
+        blending: Blending::Over,
+        depth: None,
+    };
+    drawing.pipeline(device)
+}

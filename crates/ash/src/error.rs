@@ -1,0 +1,151 @@
+//! What can go wrong.
+
+use ash::vk;
+
+/// Why something could not be made, recorded or read. Nothing was done then, unless it says so.
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// There is no Vulkan on this system.
+    #[error("no Vulkan driver can be loaded: {reason}")]
+    NoVulkan {
+        /// What the loader said.
+        reason: String,
+    },
+    /// None of the devices can do what is needed.
+    #[error("no Vulkan device has what mesh shaders need: {reason}")]
+    NoDevice {
+        /// What each of them lacks.
+        reason: String,
+    },
+    /// Validation was asked for, and is not installed.
+    #[error("the Vulkan validation layer VK_LAYER_KHRONOS_validation is not installed")]
+    NoValidation,
+    /// The device lacks something that the call cannot do without.
+    #[error("the Vulkan device lacks {feature}, which {what} needs")]
+    MissingFeature {
+        /// What it lacks.
+        feature: &'static str,
+        /// What needs it.
+        what: &'static str,
+    },
+    /// The device was lost. All that was made from it is void.
+    #[error("the Vulkan device was lost")]
+    DeviceLost,
+    /// No memory is left for it.
+    #[error("the Vulkan device is out of memory for {what}")]
+    OutOfMemory {
+        /// What needed it.
+        what: &'static str,
+    },
+    /// The driver refused it.
+    #[error("the Vulkan driver refused {what}: {reason}")]
+    Refused {
+        /// What it refused.
+        what: &'static str,
+        /// What it said.
+        reason: String,
+    },
+    /// A shader is not valid.
+    #[error("the shader of {what} is not valid: {reason}")]
+    Shader {
+        /// What it is of.
+        what: &'static str,
+        /// What the compiler says, with line and column.
+        reason: String,
+    },
+    /// A buffer would be larger than the device's limits for one.
+    #[error("{what} takes {bytes} bytes, this Vulkan device allows {limit} in one buffer")]
+    TooLarge {
+        /// What is in it.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+        /// The device's limit.
+        limit: u64,
+    },
+    /// More placements than there is room for.
+    #[error("{given} placements are given, there is room for {capacity}")]
+    TooManyPlacements {
+        /// Number of placements given.
+        given: usize,
+        /// The capacity that the output was made with.
+        capacity: u32,
+    },
+    /// Each instance needs a placement for each part of the model.
+    #[error("{given} placements are not a multiple of the model's {parts} parts")]
+    UnevenPlacements {
+        /// Number of placements given.
+        given: usize,
+        /// Number of parts of the model.
+        parts: u32,
+    },
+    /// A placement flattens its part, or is not finite: there is no viewpoint in its space.
+    #[error("placement {index} has no inverse")]
+    SingularPlacement {
+        /// Its index.
+        index: usize,
+    },
+    /// Contours were made for mesh shaders with workgroups of other sizes.
+    #[error("the contours were made for another pass of mesh shaders")]
+    OtherPass,
+    /// A surface is made from the meshes that the model's parts were made from.
+    #[error("the meshes of the surface are not those that the model was made from")]
+    OtherMeshes,
+    /// The device has no images of that size.
+    #[error("a picture of {width} x {height} pixels is not within 1 and {limit} pixels a side")]
+    PictureSize {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// Most pixels a side.
+        limit: u32,
+    },
+    /// A model needs a part.
+    #[error("a model needs at least one part")]
+    NoParts,
+    /// A content was put together by other means, and not well.
+    #[error("the content of the model refers to {what} that are not there")]
+    Inconsistent {
+        /// To what.
+        what: &'static str,
+    },
+    /// Patches were asked for from a model that was made without.
+    #[error("the model was made from a mesh without patches: brute force is all it can do")]
+    NoPatches,
+    /// Not all contour edges fit the output.
+    #[error("{needed} segments were found, there is room for {capacity}")]
+    Overflow {
+        /// Number of segments found.
+        needed: u64,
+        /// Number that fits.
+        capacity: u32,
+    },
+    /// Two things that must be of one device are not.
+    #[error("{what} was made for another Vulkan device")]
+    OtherDevice {
+        /// What.
+        what: &'static str,
+    },
+    /// What is to be read was recorded into other commands than those that were executed.
+    #[error("{what} was asked for in other commands than these")]
+    OtherCommands {
+        /// What.
+        what: &'static str,
+    },
+}
+
+impl Error {
+    /// What a call of the driver came back with.
+    pub(crate) fn of(what: &'static str, result: vk::Result) -> Self {
+        match result {
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY
+            | vk::Result::ERROR_OUT_OF_HOST_MEMORY
+            | vk::Result::ERROR_OUT_OF_POOL_MEMORY
+            | vk::Result::ERROR_TOO_MANY_OBJECTS => Self::OutOfMemory { what },
+            vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost,
+            other => Self::Refused { what, reason: other.to_string() },
+        }
+    }
+}

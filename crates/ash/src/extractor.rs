@@ -1,0 +1,90 @@
+//! Two passes: compute shaders find contour edges, and an indirect draw of them follows.
+
+use drypoint_shaders::{
+    BRUTE_FORCE, PATCHES, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS, prelude,
+};
+
+use crate::commands::{Commands, Use};
+use crate::contours::Contours;
+use crate::pipeline::Pipeline;
+use crate::{Device, Error, layouts};
+
+/// Compute pipelines, one of them for each way to find contour edges; those of `drypoint-wgpu`.
+#[derive(Debug)]
+pub struct Extractor {
+    device: Device,
+    limits: PlanLimits,
+    brute_force: Pipeline,
+    patches: Pipeline,
+    super_patches: Pipeline,
+    tally: Pipeline,
+}
+
+/// Lanes in a workgroup.
+const WIDTH: u32 = 64;
+
+impl Extractor {
+    /// Compiles all shaders: some tens of milliseconds.
+    ///
+    /// # Errors
+    /// If the driver refuses a shader.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        const { assert!(WIDTHS[1] == WIDTH, "one of those that sources are made for") };
+        let limits = device.limits();
+        let model = layouts::model(device)?;
+        let extraction = layouts::extraction(device)?;
+        let found = |sources: [&str; 2], entry| {
+            let source = prelude(WIDTH) + sources[Subgroups::With as usize];
+            Pipeline::compute(device, ("extraction", &source, entry), &[&model, &extraction])
+        };
+        let tally = layouts::tally(device)?;
+        Ok(Self {
+            limits: PlanLimits {
+                width: WIDTH,
+                row: limits.max_compute_work_group_count[0]
+                    .min(limits.max_compute_work_group_count[1]),
+                edges: 1 << 28,
+            },
+            brute_force: found(BRUTE_FORCE, "brute_force")?,
+            patches: found(PATCHES, "patches_and_edges")?,
+            super_patches: found(SUPER_PATCHES, "super_patches_to_edges")?,
+            tally: Pipeline::compute(device, ("totals", TALLY, "tally"), &[&model, &tally])?,
+            device: device.clone(),
+        })
+    }
+
+    /// The device it was made for.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    pub(crate) fn limits(&self) -> PlanLimits {
+        self.limits
+    }
+
+    /// Records what `contours` was prepared for. Outside of rendering.
+    ///
+    /// # Errors
+    /// If the commands are of another device.
+    pub fn record(&self, commands: &mut Commands, contours: &Contours) -> Result<(), Error> {
+        commands.check(&self.device, "the extractor")?;
+        for (index, dispatch) in contours.dispatches.iter().enumerate() {
+            let pipeline = match dispatch.stage {
+                Stage::Edges => &self.brute_force,
+                Stage::Patches => &self.patches,
+                Stage::SuperPatches => &self.super_patches,
+            };
+            let model = (contours.model().bindings(dispatch.chunk), &[][..]);
+            let offset = [contours.input.offset(index)];
+            commands.bind(pipeline, &[model, (&contours.work_set, &offset)]);
+            commands.dispatch(dispatch.grid);
+            commands.barrier(Use::WRITTEN_BY_COMPUTE, Use::USED_BY_COMPUTE);
+            commands.bind(&self.tally, &[model, (&contours.tally_set, &offset)]);
+            commands.dispatch([1, 1]);
+            commands.barrier(Use::WRITTEN_BY_COMPUTE, Use::USED_BY_COMPUTE);
+        }
+        let after = Use::READ_AS_ARGUMENTS.and(Use::READ_BY_DRAWING).and(Use::COPIED_FROM);
+        commands.barrier(Use::WRITTEN_BY_COMPUTE, after);
+        Ok(())
+    }
+}

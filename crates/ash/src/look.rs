@@ -1,0 +1,54 @@
+//! How lines look, on the GPU.
+
+use ash::vk;
+use ash::vk::BufferUsageFlags as Usage;
+use drypoint_shaders::{DepthOrder, LineStyle, Stroke};
+use glam::Mat4;
+
+use crate::binding::{Layout, Resource, Set};
+use crate::commands::{Commands, Use};
+use crate::memory::Buffer;
+use crate::{Device, Error};
+
+/// A line style, and the matrix to clip space.
+#[derive(Debug)]
+pub(crate) struct Look {
+    buffer: Buffer,
+    set: Set,
+}
+
+impl Look {
+    /// Bound by `layout`, which has nothing else.
+    pub(crate) fn new(device: &Device, layout: &Layout) -> Result<Self, Error> {
+        let buffer = uniform(device, "a line style", size_of::<Stroke>())?;
+        let set = Set::new(layout, "the bindings of a line style", &[Resource::Buffer(&buffer)])?;
+        Ok(Self { buffer, set })
+    }
+
+    pub(crate) fn record(&self, commands: &mut Commands, scene_to_clip: Mat4, style: &LineStyle) {
+        let stroke = style.stroke(scene_to_clip);
+        commands.barrier(Use::ANYTHING, Use::COPIED_TO);
+        commands.update(&self.buffer, bytemuck::bytes_of(&stroke));
+        commands.barrier(Use::COPIED_TO, Use::READ_BY_DRAWING);
+    }
+
+    pub(crate) fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    pub(crate) fn set(&self) -> &Set {
+        &self.set
+    }
+}
+
+/// A buffer that is written by commands and read as a uniform.
+pub(crate) fn uniform(device: &Device, what: &'static str, size: usize) -> Result<Buffer, Error> {
+    Buffer::new(device, what, size as u64, Usage::UNIFORM_BUFFER | Usage::TRANSFER_DST)
+}
+
+pub(crate) const fn compare(order: DepthOrder) -> vk::CompareOp {
+    match order {
+        DepthOrder::Standard => vk::CompareOp::LESS_OR_EQUAL,
+        DepthOrder::Reversed => vk::CompareOp::GREATER_OR_EQUAL,
+    }
+}
