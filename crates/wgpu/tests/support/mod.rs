@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use drypoint_wgpu::{Contours, Error, Extractor, Gpu, Method, Placement, Segment};
 
+#[allow(unused_imports, reason = "each test program uses what it needs")]
 pub(crate) use shared::{Expected, example, is_without_gpu, patches, placements};
 
 /// Warnings and errors of wgpu and of the validation layers, all tests of one program together.
