@@ -94,7 +94,9 @@ impl DrawPlan<'_> {
         let row = limits.row;
         // A task workgroup of the last row that is left over launches nothing, a mesh workgroup is there in vain.
         let most_rows = if culling == Culling::Nothing { 1 } else { u64::from(row) };
-        let most_workgroups = u64::from(limits.workgroups).min(u64::from(row) * most_rows);
+        let allowed = u64::from(limits.workgroups).min(u64::from(row) * most_rows);
+        // Rows are filled up with at most one workgroup each.
+        let most_workgroups = allowed - (allowed.div_ceil(u64::from(row)) - 1);
         // Items of all instances are numbered in 32 bits, and those of the last row beyond them too.
         let most_workgroups = most_workgroups
             .min(u64::from(u32::MAX / items_per_workgroup).saturating_sub(u64::from(row)))

@@ -34,6 +34,19 @@ pub(crate) struct Properties {
     pub(crate) mesh: MeshProperties,
 }
 
+/// What work is cut to. Lowered, it shows how work is split.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of a storage buffer that a shader sees.
+    pub storage_range: u32,
+    /// Workgroups of compute shaders along one dimension.
+    pub compute_row: u32,
+    /// Task workgroups along one dimension, and in all.
+    pub task_grid: [u32; 2],
+    /// Mesh workgroups along one dimension, and in all.
+    pub mesh_grid: [u32; 2],
+}
+
 /// What it says about task and mesh shaders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshProperties {
@@ -107,7 +120,7 @@ impl Device {
         features: OptionalFeatures,
     ) -> Result<Self, Error> {
         // SAFETY: the caller's promise.
-        unsafe { Self::new(instance, physical_device, (raw, features), None) }
+        unsafe { Self::new(instance, physical_device, (raw, features), (None, None)) }
     }
 
     /// # Safety
@@ -116,11 +129,14 @@ impl Device {
         instance: &ash::Instance,
         physical_device: vk::PhysicalDevice,
         (raw, features): (&ash::Device, OptionalFeatures),
-        owner: Option<Box<dyn Send + Sync>>,
+        (owner, lower): (Option<Box<dyn Send + Sync>>, Option<fn(&mut Limits)>),
     ) -> Result<Self, Error> {
         // SAFETY: the physical device is one of the instance's.
-        let properties = unsafe { Properties::of(instance, physical_device) }
+        let mut properties = unsafe { Properties::of(instance, physical_device) }
             .map_err(|reason| Error::NoDevice { reason })?;
+        if let Some(lower) = lower {
+            properties.lower(lower);
+        }
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
             device: raw.clone(),
@@ -202,6 +218,27 @@ impl Drop for Shared {
 }
 
 impl Properties {
+    /// Lowers what work is cut to, and raises nothing.
+    fn lower(&mut self, lower: fn(&mut Limits)) {
+        let (limits, mesh) = (&mut self.limits, &mut self.mesh);
+        let row = &mut limits.max_compute_work_group_count;
+        let given = Limits {
+            storage_range: limits.max_storage_buffer_range,
+            compute_row: row[0].min(row[1]),
+            task_grid: mesh.task_grid,
+            mesh_grid: mesh.mesh_grid,
+        };
+        let mut wanted = given;
+        lower(&mut wanted);
+        let lowest = |given: [u32; 2], wanted: [u32; 2]| {
+            [given[0].min(wanted[0]).max(1), given[1].min(wanted[1]).max(1)]
+        };
+        limits.max_storage_buffer_range = given.storage_range.min(wanted.storage_range);
+        [row[0], row[1]] = [given.compute_row.min(wanted.compute_row).max(1); 2];
+        mesh.task_grid = lowest(given.task_grid, wanted.task_grid);
+        mesh.mesh_grid = lowest(given.mesh_grid, wanted.mesh_grid);
+    }
+
     /// What the physical device can do, or what it lacks.
     ///
     /// # Safety

@@ -6,13 +6,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ash::{ext, vk};
 
 use crate::commands::{Commands, Executed};
-use crate::device::{OptionalFeatures, Properties, REQUIRED_EXTENSIONS, RequiredFeatures};
+use crate::device::{Limits, OptionalFeatures, Properties, REQUIRED_EXTENSIONS, RequiredFeatures};
 use crate::{Device, Error};
 
 /// A device without a window, with a queue.
 #[derive(Debug)]
 pub struct Gpu {
     device: Device,
+    /// Functions, for what else is made from them.
+    entry: Functions<ash::Entry>,
+    instance: Functions<ash::Instance>,
+    physical_device: vk::PhysicalDevice,
     family: u32,
     queue: vk::Queue,
     /// Commands are recorded and executed one after the other.
@@ -29,6 +33,8 @@ pub struct GpuOptions {
     pub listener: Option<Listener>,
     /// Enabled besides, as for a window: instance extensions and device extensions.
     pub extensions: [Vec<&'static CStr>; 2],
+    /// Lowers what work is cut to, as to try how it is split.
+    pub lower: Option<fn(&mut Limits)>,
 }
 
 impl std::fmt::Debug for GpuOptions {
@@ -39,7 +45,16 @@ impl std::fmt::Debug for GpuOptions {
             .debug_struct("GpuOptions")
             .field("is_validated", &is_validated)
             .field("extensions", extensions)
-            .finish()
+            .finish_non_exhaustive()
+    }
+}
+
+/// Tables of functions, which have nothing to show.
+struct Functions<T>(T);
+
+impl<T> std::fmt::Debug for Functions<T> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("..")
     }
 }
 
@@ -53,7 +68,7 @@ struct Owner {
 struct Instance {
     raw: ash::Instance,
     /// Its functions are those of the loader, which stays as long as this.
-    _entry: ash::Entry,
+    entry: ash::Entry,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     /// The messenger refers to it.
     _listener: Option<Box<Listener>>,
@@ -81,10 +96,16 @@ impl Gpu {
         let features = instance.optional_features(physical);
         let raw = instance.create_device((physical, family), features, &options.extensions[1])?;
         let owner = Owner { instance, device: raw.clone() };
-        let functions = owner.instance.raw.clone();
+        let (entry, functions) = (owner.instance.entry.clone(), owner.instance.raw.clone());
         // SAFETY: it was made right now, with all that is required, and goes with its owner.
-        let device =
-            unsafe { Device::new(&functions, physical, (&raw, features), Some(Box::new(owner))) }?;
+        let device = unsafe {
+            Device::new(
+                &functions,
+                physical,
+                (&raw, features),
+                (Some(Box::new(owner)), options.lower),
+            )
+        }?;
         // SAFETY: the device was made with one queue of that family.
         let queue = unsafe { raw.get_device_queue(family, 0) };
         let flags = vk::CommandPoolCreateFlags::TRANSIENT;
@@ -92,12 +113,35 @@ impl Gpu {
         // SAFETY: a pool of a family that the device has.
         let pool = unsafe { raw.create_command_pool(&info, None) };
         let pool = pool.map_err(|error| Error::of("a command pool", error))?;
-        Ok(Self { device, family, queue, pool: Mutex::new(pool) })
+        Ok(Self {
+            device,
+            entry: Functions(entry),
+            instance: Functions(functions),
+            physical_device: physical,
+            family,
+            queue,
+            pool: Mutex::new(pool),
+        })
     }
 
     /// The device.
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// The loader's functions.
+    pub fn entry(&self) -> &ash::Entry {
+        &self.entry.0
+    }
+
+    /// The instance's functions.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.instance.0
+    }
+
+    /// What the device was made from.
+    pub fn physical_device(&self) -> vk::PhysicalDevice {
+        self.physical_device
     }
 
     /// The family of the queue: graphics, compute and transfer.
@@ -200,7 +244,7 @@ impl Instance {
         // SAFETY: all that is pointed to is still there.
         let raw = unsafe { entry.create_instance(&info, None) };
         let raw = raw.map_err(|error| Error::NoVulkan { reason: error.to_string() })?;
-        let mut instance = Self { raw, _entry: entry, messenger: None, _listener: None };
+        let mut instance = Self { raw, entry, messenger: None, _listener: None };
         if let Some(listener) = &options.listener {
             instance.listen(Box::new(listener.clone()))?;
         }
@@ -208,7 +252,7 @@ impl Instance {
     }
 
     fn listen(&mut self, listener: Box<Listener>) -> Result<(), Error> {
-        let functions = ext::debug_utils::Instance::new(&self._entry, &self.raw);
+        let functions = ext::debug_utils::Instance::new(&self.entry, &self.raw);
         let heard: *const Listener = &*listener;
         let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(

@@ -94,7 +94,7 @@ pub use canvas::{Canvas, Subject};
 pub use commands::{Commands, Executed, Recorded};
 pub use contours::{Capacity, Contours, FoundByCompute};
 pub use depth_pass::{Found, Surface};
-pub use device::{Device, OptionalFeatures, REQUIRED_EXTENSIONS, RequiredFeatures};
+pub use device::{Device, Limits, OptionalFeatures, REQUIRED_EXTENSIONS, RequiredFeatures};
 pub use drypoint_shaders::{DepthOrder, LineStyle, Method, Placement, Segment, Statistics, View};
 pub use error::Error;
 pub use extractor::Extractor;
