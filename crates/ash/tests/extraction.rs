@@ -4,12 +4,13 @@
 mod support;
 
 use drypoint_ash::{
-    Capacity, Contours, Counting, Counts, Extractor, Gpu, MeshContours, MeshOptions, MeshPass,
-    MeshStatistics, Method, Model, Placement, Queries, Segment, Statistics,
+    Capacity, Contours, Counting, Counts, Error, Extractor, Gpu, Limits, MeshContours, MeshOptions,
+    MeshPass, MeshStatistics, Method, Model, Placement, Queries, Segment, Statistics,
 };
 use drypoint_fusion::{Levels, PatchSet};
-use drypoint_mesh::shapes;
-use glam::Mat4;
+use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
+use drypoint_shaders::Content;
+use glam::{DAffine3, DVec3, Mat4};
 use support::{Expected, gpu, patches, placements};
 
 /// What one way found, sorted.
@@ -129,5 +130,261 @@ fn every_shape_is_as_brute_force_with_exact_predicates_says() {
             check(&gpu, (&pass, &extractor), &set, &placements(&shape.mesh), &what);
         }
     }
+    support::expect_silence();
+}
+
+#[test]
+fn every_width_finds_the_same() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let extractor = Extractor::new(gpu.device()).expect("shaders compile");
+    let mesh = shapes::torus_knot(3_000);
+    for [task_width, edges_per_workgroup] in [[32, 64], [128, 32], [64, 16], [5, 7], [1, 1]] {
+        let options = MeshOptions {
+            task_width: Some(task_width),
+            edges_per_workgroup: Some(edges_per_workgroup),
+            ..MeshOptions::default()
+        };
+        let pass = MeshPass::new(gpu.device(), &options).expect("shaders compile");
+        assert_eq!(
+            [pass.task_width(), pass.edges_per_workgroup()],
+            [task_width, edges_per_workgroup]
+        );
+        for levels in [Levels::One, Levels::Two] {
+            let what = format!("{task_width} and {edges_per_workgroup} lanes, {levels:?}");
+            let few = &placements(&mesh)[..6];
+            check(&gpu, (&pass, &extractor), &patches(&mesh, levels), few, &what);
+        }
+    }
+    for [task_width, edges_per_workgroup] in [[0, 32], [129, 32], [32, 0], [32, 65]] {
+        let options = MeshOptions {
+            task_width: Some(task_width),
+            edges_per_workgroup: Some(edges_per_workgroup),
+            ..MeshOptions::default()
+        };
+        let error = MeshPass::new(gpu.device(), &options).expect_err("it has no such lanes");
+        assert!(matches!(error, Error::Refused { .. }), "{error}");
+    }
+    support::expect_silence();
+}
+
+/// Few workgroups in a row and in all, and bindings of 64 KiB: chunks, tiles of items and tiles of instances, as
+/// 10 million edges and 252 instances need on devices with common limits.
+#[test]
+fn work_beyond_the_limits_is_split() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = support::gpu_with(Some(|limits: &mut Limits| {
+        limits.storage_range = 1 << 16;
+        limits.compute_row = 3;
+        limits.task_grid = [3, 8];
+        limits.mesh_grid = [5, 25];
+    }));
+    let pass = MeshPass::new(gpu.device(), &MeshOptions::default()).expect("shaders compile");
+    let extractor = Extractor::new(gpu.device()).expect("shaders compile");
+    let mesh = shapes::torus_knot(8_000);
+    for levels in [Levels::One, Levels::Two] {
+        let set = patches(&mesh, levels);
+        assert!(set.wings().len() * 32 > 4 << 16, "it takes several bindings");
+        for few in [1, 5] {
+            let placements = &placements(&mesh)[..few];
+            let what = format!("{few} instances, {levels:?}");
+            let (model, _) =
+                gpu.run(|commands| Model::new(commands, &[&set])).expect("there is memory");
+            let expected = Expected::new(&set, placements);
+            let capacity = Capacity { placements: few as u32, segments: 4_000 };
+            let mut meshed = MeshContours::new(&pass, &model, capacity).expect("there is memory");
+            let mut computed =
+                Contours::new(&extractor, &model, capacity).expect("there is memory");
+            for method in [Method::BruteForce, Method::Patches] {
+                let (mesh, drawn) = by_mesh(&gpu, &pass, &mut meshed, placements, method);
+                expected.compare(&mesh.segments, &what);
+                let lanes = u64::from(pass.edges_per_workgroup());
+                assert_eq!(mesh.counts.mesh_invocations, drawn.mesh_workgroups * lanes, "{what}");
+                assert_eq!(mesh.counts.primitives, drawn.found.segments, "{what}");
+                let (compute, found) =
+                    by_compute(&gpu, &extractor, &mut computed, placements, method);
+                assert_eq!(mesh.segments, compute.segments, "{what}");
+                assert_eq!(drawn.found, found, "{what}");
+            }
+        }
+    }
+    let large = patches(&shapes::icosphere(20_000), Levels::One);
+    let error = gpu.run(|commands| Model::new(commands, &[&large]));
+    let error = error.expect_err("vertices are not split");
+    assert!(matches!(error, Error::TooLarge { limit: 65_536, .. }), "{error}");
+    support::expect_silence();
+}
+
+#[test]
+fn parts_are_placed_one_by_one() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let pass = MeshPass::new(gpu.device(), &MeshOptions::default()).expect("shaders compile");
+    let meshes = [shapes::icosphere(500), shapes::torus_knot(2_000), shapes::icosphere(80)];
+    for levels in [[Levels::One; 3], [Levels::One, Levels::Two, Levels::One]] {
+        let sets: Vec<_> =
+            meshes.iter().zip(levels).map(|(mesh, levels)| patches(mesh, levels)).collect();
+        let parts: Vec<_> = sets.iter().collect();
+        let (model, _) = gpu.run(|commands| Model::new(commands, &parts)).expect("there is memory");
+        assert_eq!(model.part_count(), 3);
+        let capacity = Capacity { placements: 12, segments: 20_000 };
+        let mut contours = MeshContours::new(&pass, &model, capacity).expect("there is memory");
+        let all = placements(&meshes[0]);
+        for method in [Method::BruteForce, Method::Patches] {
+            let (found, _) = by_mesh(&gpu, &pass, &mut contours, &all[..12], method);
+            let mut found = found.segments;
+            let mut first_vertex = 0;
+            for (part, set) in (0..).zip(&sets) {
+                let of_part: Vec<_> = all[..12].iter().copied().skip(part).step_by(3).collect();
+                let is_of_part = |segment: &mut Segment| segment.placement % 3 == part as u32;
+                let mut segments: Vec<_> = found.extract_if(.., is_of_part).collect();
+                for segment in &mut segments {
+                    segment.from_vertex -= first_vertex;
+                    segment.to_vertex -= first_vertex;
+                    segment.placement /= 3;
+                }
+                segments.sort_unstable();
+                Expected::new(set, &of_part)
+                    .compare(&segments, &format!("part {part}, {method:?}"));
+                first_vertex += set.positions().len() as u32;
+            }
+            assert!(found.is_empty());
+        }
+        let uneven =
+            gpu.run(|commands| contours.prepare(&pass, commands, &all[..4], Method::Patches));
+        assert_eq!(uneven.err(), Some(Error::UnevenPlacements { given: 4, parts: 3 }));
+    }
+    support::expect_silence();
+}
+
+#[test]
+fn what_does_not_fit_is_counted_and_not_written() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let pass = MeshPass::new(gpu.device(), &MeshOptions::default()).expect("shaders compile");
+    let mesh = shapes::torus_knot(3_000);
+    let set = patches(&mesh, Levels::One);
+    let all = &placements(&mesh)[..6];
+    let (model, _) = gpu.run(|commands| Model::new(commands, &[&set])).expect("there is memory");
+    let roomy = Capacity { placements: 6, segments: 50_000 };
+    let mut contours = MeshContours::new(&pass, &model, roomy).expect("there is memory");
+    let (found, _) = by_mesh(&gpu, &pass, &mut contours, all, Method::Patches);
+    let needed = found.segments.len() as u32;
+    for capacity in [0, 1, needed - 1, needed] {
+        let tight = Capacity { segments: capacity, ..roomy };
+        let mut contours = MeshContours::new(&pass, &model, tight).expect("there is memory");
+        let (again, executed) = gpu
+            .run(|commands| {
+                contours.prepare(&pass, commands, all, Method::Patches)?;
+                pass.extract(commands, &contours)?;
+                contours.download(commands)
+            })
+            .expect("it is drawn");
+        let segments = again.segments(&executed);
+        if capacity < needed {
+            let needed = u64::from(needed);
+            assert_eq!(segments, Err(Error::Overflow { needed, capacity }));
+        } else {
+            let mut segments = segments.expect("they fit");
+            segments.sort_unstable();
+            assert_eq!(segments, found.segments);
+        }
+        let statistics = again.statistics(&executed).expect("it was counted");
+        assert_eq!(statistics.found.segments, u64::from(needed));
+    }
+    support::expect_silence();
+}
+
+#[test]
+fn nothing_is_found_of_nothing_and_what_cannot_be_is_refused() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let pass = MeshPass::new(gpu.device(), &MeshOptions::default()).expect("shaders compile");
+    let mesh = shapes::icosphere(100);
+    let set = patches(&mesh, Levels::One);
+    let (model, _) = gpu.run(|commands| Model::new(commands, &[&set])).expect("there is memory");
+    let capacity = Capacity { placements: 2, segments: 1_000 };
+    let mut contours = MeshContours::new(&pass, &model, capacity).expect("there is memory");
+    for method in [Method::BruteForce, Method::Patches] {
+        let (found, statistics) = by_mesh(&gpu, &pass, &mut contours, &[], method);
+        assert!(found.segments.is_empty());
+        assert_eq!(statistics.mesh_workgroups, 0);
+        assert_eq!([found.counts.task_invocations, found.counts.mesh_invocations], [0, 0]);
+    }
+    let good = placements(&mesh)[0];
+    let flat = Placement { to_scene: DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0)), ..good };
+    let nowhere = Placement { viewpoint: Viewpoint::at(DVec3::NAN), ..good };
+    for (placements, error) in [
+        (vec![good; 3], Error::TooManyPlacements { given: 3, capacity: 2 }),
+        (vec![good, flat], Error::SingularPlacement { index: 1 }),
+        (vec![nowhere], Error::SingularPlacement { index: 0 }),
+    ] {
+        let refused = gpu.run(|commands| {
+            let refused = contours.prepare(&pass, commands, &placements, Method::Patches);
+            // What was refused left nothing of the frame before.
+            pass.extract(commands, &contours)?;
+            refused
+        });
+        assert_eq!(refused.err(), Some(error));
+    }
+    let adjacency = MeshAdjacency::new(&mesh);
+    let (bare, _) = gpu
+        .run(|commands| Model::without_patches(commands, &mesh, &adjacency, EdgeFilter::All))
+        .expect("there is memory");
+    let mut contours = MeshContours::new(&pass, &bare, capacity).expect("there is memory");
+    let (found, _) = by_mesh(&gpu, &pass, &mut contours, &[good], Method::BruteForce);
+    Expected::new(&set, &[good]).compare(&found.segments, "a bare mesh");
+    let error = gpu.run(|commands| contours.prepare(&pass, commands, &[good], Method::Patches));
+    assert_eq!(error.err(), Some(Error::NoPatches));
+    let error = gpu.run(|commands| Model::new(commands, &[]));
+    assert_eq!(error.err(), Some(Error::NoParts));
+    let many = Capacity { placements: u32::MAX, segments: 1 };
+    let error = MeshContours::new(&pass, &model, many).expect_err("no binding holds it");
+    assert!(matches!(error, Error::TooLarge { .. }), "{error}");
+    let error = gpu.run(|commands| {
+        let mut content = Content::new(&[&set]);
+        content.ends[3].from_vertex = 1 << 20;
+        Model::upload(commands, &content)
+    });
+    assert_eq!(error.err(), Some(Error::Inconsistent { what: "vertices" }));
+    support::expect_silence();
+}
+
+/// A model, contours and a pass may go before what was recorded with them has executed.
+#[test]
+fn what_commands_use_stays_until_they_have_executed() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let mesh = shapes::torus_knot(3_000);
+    let set = patches(&mesh, Levels::Two);
+    let all = &placements(&mesh)[..4];
+    let (found, executed) = gpu
+        .run(|commands| {
+            let pass = MeshPass::new(commands.device(), &MeshOptions::default())?;
+            let model = Model::new(commands, &[&set])?;
+            let capacity = Capacity { placements: 4, segments: 20_000 };
+            let mut contours = MeshContours::new(&pass, &model, capacity)?;
+            contours.prepare(&pass, commands, all, Method::Patches)?;
+            pass.extract(commands, &contours)?;
+            contours.download(commands)
+        })
+        .expect("it is drawn");
+    // The device stays as long as something that was made from it.
+    drop(gpu);
+    let mut segments = found.segments(&executed).expect("they fit");
+    segments.sort_unstable();
+    Expected::new(&set, all).compare(&segments, "after all is gone");
     support::expect_silence();
 }

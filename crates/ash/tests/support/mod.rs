@@ -6,7 +6,7 @@ mod shared;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use drypoint_ash::{Error, Gpu, GpuOptions};
+use drypoint_ash::{Error, Gpu, GpuOptions, Limits};
 
 #[allow(unused_imports, reason = "each test program uses what it needs")]
 pub(crate) use shared::{Expected, example, is_without_gpu, patches, placements};
@@ -28,9 +28,14 @@ pub(crate) fn expect_silence() {
 
 /// A device with validation.
 pub(crate) fn gpu() -> Gpu {
+    gpu_with(None)
+}
+
+/// The same with lower limits.
+pub(crate) fn gpu_with(lower: Option<fn(&mut Limits)>) -> Gpu {
     let listener: drypoint_ash::Listener =
         Arc::new(|message: &str| messages().push(message.to_owned()));
-    let options = GpuOptions { listener: Some(listener), ..GpuOptions::default() };
+    let options = GpuOptions { listener: Some(listener), lower, ..GpuOptions::default() };
     match Gpu::request_with(&options) {
         Ok(gpu) => gpu,
         Err(Error::NoValidation) => panic!(
