@@ -1,16 +1,19 @@
-//! Extraction with wgpu on every shape and model: the 252 views, directions and viewpoints near the mesh, of
-//! instances that are turned, mirrored and stretched.
+//! Extraction with wgpu, and with Vulkan's task and mesh shaders, on every shape and model: the 252 views,
+//! directions and viewpoints near the mesh, of instances that are turned, mirrored and stretched.
 #![allow(
     clippy::print_stdout,
     reason = "what is left to f32 is to be seen, as `--nocapture` shows it"
 )]
 #![allow(clippy::cast_possible_truncation, reason = "instances and segments are few")]
 
+#[path = "../../crates/ash/tests/support/mod.rs"]
+mod mesh_support;
 #[path = "../../crates/wgpu/tests/support/mod.rs"]
 mod support;
 
 use std::ops::ControlFlow;
 
+use drypoint_ash::{Counting, MeshContours, MeshOptions, MeshPass, MeshStatistics, Queries};
 use drypoint_cpu::extract_patches;
 use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
@@ -99,19 +102,33 @@ impl<'a> Subject<'a> {
             .expect("nothing stops it")
     }
 
-    /// Compares what both methods find. The number of edges that patches had tested, and of edges that were
-    /// found otherwise than the definition has them.
-    fn check(&self, gpu: &Gpu, extractor: &Extractor, set: &PatchSet) -> [u64; 2] {
-        let model = Model::new(extractor, &[set]).expect("there is memory");
+    /// Most segments of the views that are looked at in one go.
+    fn most_segments(&self) -> u32 {
         let most = |views: &[View]| views.iter().map(|v| v.contours.len() + v.doubtful.len()).sum();
-        let segments: usize =
-            self.views.chunks(INSTANCES).map(most).max().expect("there are views");
-        let capacity = Capacity { placements: INSTANCES as u32, segments: segments as u32 };
-        let mut contours = Contours::new(extractor, &model, capacity).expect("there is memory");
+        let all = self.views.chunks(INSTANCES).map(most);
+        all.max().unwrap_or(0usize) as u32
+    }
+
+    fn capacity(&self) -> Capacity {
+        Capacity { placements: INSTANCES as u32, segments: self.most_segments() }
+    }
+
+    /// Compares what wgpu finds by each of `methods`. The number of edges that patches had tested, and of edges
+    /// that were found otherwise than the definition has them.
+    fn check(
+        &self,
+        gpu: &Gpu,
+        extractor: &Extractor,
+        set: &PatchSet,
+        methods: &[Method],
+    ) -> [u64; 2] {
+        let model = Model::new(extractor, &[set]).expect("there is memory");
+        let contours = Contours::new(extractor, &model, self.capacity());
+        let mut contours = contours.expect("there is memory");
         let (mut edges_tested, mut differing) = (0, 0);
         for views in self.views.chunks(INSTANCES) {
             let placements: Vec<_> = views.iter().map(|view| view.placement).collect();
-            for method in [Method::BruteForce, Method::Patches] {
+            for &method in methods {
                 let found = support::extract(gpu, extractor, &mut contours, &placements, method);
                 differing += self.compare(views, &found.expect("it fits"), &format!("{method:?}"));
             }
@@ -119,6 +136,54 @@ impl<'a> Subject<'a> {
             edges_tested += statistics.edges_tested;
         }
         [edges_tested, differing]
+    }
+
+    /// The same of mesh shaders, and that nothing empty is launched or emitted. What was counted.
+    fn check_mesh(
+        &self,
+        gpu: &drypoint_ash::Gpu,
+        pass: &MeshPass,
+        set: &PatchSet,
+        methods: &[Method],
+    ) -> MeshStatistics {
+        let capacity = self.capacity();
+        let (placements, segments) = (capacity.placements, capacity.segments);
+        let capacity = drypoint_ash::Capacity { placements, segments };
+        let model = gpu.run(|commands| drypoint_ash::Model::new(commands, &[set]));
+        let contours = MeshContours::new(pass, &model.expect("there is memory").0, capacity);
+        let mut contours = contours.expect("there is memory");
+        let mut queries = Queries::new(gpu.device(), Counting::MeshShaders).expect("it can count");
+        let mut all = MeshStatistics::default();
+        for views in self.views.chunks(INSTANCES) {
+            let placements: Vec<_> = views.iter().map(|view| view.placement).collect();
+            for &method in methods {
+                let extracted = gpu.run(|commands| {
+                    contours.prepare(pass, commands, &placements, method)?;
+                    queries.begin(commands)?;
+                    pass.extract(commands, &contours)?;
+                    queries.end(commands)?;
+                    contours.download(commands)
+                });
+                let (found, executed) = extracted.expect("it is drawn");
+                let mut segments = found.segments(&executed).expect("it fits");
+                segments.sort_unstable();
+                self.compare(views, &segments, &format!("mesh shaders, {method:?}"));
+                let drawn = found.statistics(&executed).expect("it was counted");
+                let counts = queries.read(&executed).expect("it was counted");
+                let lanes = u64::from(pass.edges_per_workgroup());
+                // As many workgroups as were needed, and as many lines as there are contour edges.
+                assert_eq!(counts.mesh_invocations, drawn.mesh_workgroups * lanes, "{}", self.name);
+                assert_eq!(counts.primitives, drawn.found.segments, "{}", self.name);
+                assert_eq!(counts.primitives, segments.len() as u64, "{}", self.name);
+                if method == Method::Patches {
+                    all.found.edges_tested += drawn.found.edges_tested;
+                    all.survivors += drawn.survivors;
+                    all.mesh_workgroups += drawn.mesh_workgroups;
+                    all.idle_mesh_workgroups += drawn.idle_mesh_workgroups;
+                }
+            }
+        }
+        all
     }
 
     /// Number of edges within the margin that differ, which are listed.
@@ -182,18 +247,25 @@ fn every_shape_and_model_is_as_the_definition_says() {
     }
     let gpu = support::gpu();
     let extractor = Extractor::new(&gpu.device).expect("shaders compile");
+    let vulkan = mesh_support::gpu();
+    let pass = MeshPass::new(vulkan.device(), &MeshOptions::default()).expect("shaders compile");
+    let both = [Method::BruteForce, Method::Patches];
     let result = meshes::for_each("", |name, mesh| {
         let adjacency = MeshAdjacency::new(mesh);
         let subject = Subject::new(name, mesh, &adjacency);
         let contours: usize = subject.views.iter().map(|view| view.contours.len()).sum();
         let doubtful: usize = subject.views.iter().map(|view| view.doubtful.len()).sum();
         let set = subject.patches(Levels::One);
-        let [edges_tested, differing] = subject.check(&gpu, &extractor, &set);
+        let [edges_tested, differing] = subject.check(&gpu, &extractor, &set, &both);
+        let drawn = subject.check_mesh(&vulkan, &pass, &set, &both);
         let [on_the_cpu, borderline] = subject.tested_on_the_cpu(&set);
         println!(
             "{name}: {contours} contour edges, {doubtful} edges within the margin, {differing} differ; \
-             {edges_tested} edges tested, {on_the_cpu} on the CPU, {borderline} of patches on the border"
+             {edges_tested} edges tested, {on_the_cpu} on the CPU, {borderline} of patches on the border; \
+             {} mesh workgroups of {} survivors, {} idle",
+            drawn.mesh_workgroups, drawn.survivors, drawn.idle_mesh_workgroups
         );
+        assert_eq!(drawn.found.edges_tested, edges_tested, "{name}");
         // How wide the margin may be is tested where it is defined. Near viewpoints lie on the surface, and
         // parts with planes are seen along these.
         let far = &subject.views[..FAR.min(subject.views.len())];
@@ -207,9 +279,13 @@ fn every_shape_and_model_is_as_the_definition_says() {
         let is_scaled = !(1e-13..1e17).contains(&set.provenance().unit);
         let more = if is_scaled { 0 } else { on_the_cpu.saturating_sub(edges_tested) };
         assert!(edges_tested.saturating_sub(on_the_cpu).max(more) <= borderline, "{name}");
-        subject.check(&gpu, &extractor, &subject.patches(Levels::Two));
+        // The edges are the same: brute force would do again what it has done.
+        let set = subject.patches(Levels::Two);
+        subject.check(&gpu, &extractor, &set, &[Method::Patches]);
+        subject.check_mesh(&vulkan, &pass, &set, &[Method::Patches]);
         Ok(())
     });
     result.expect("every mesh can be read");
     support::expect_silence();
+    mesh_support::expect_silence();
 }
