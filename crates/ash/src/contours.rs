@@ -120,18 +120,31 @@ impl Contours {
         &self.model
     }
 
+    /// What there is room for.
+    pub fn capacity(&self) -> Capacity {
+        self.capacity
+    }
+
     /// Records a copy of all that was found, after [`Extractor::record`] and outside of rendering. The copy
     /// has room for all that there is room for here.
     ///
     /// # Errors
     /// If there is not enough memory.
     pub fn download(&self, commands: &mut Commands) -> Result<FoundByCompute, Error> {
-        commands.check(self.model.device(), "contours")?;
         Ok(FoundByCompute {
-            totals: commands.download("totals", &self.totals)?,
+            counted: self.download_statistics(commands)?,
             segments: commands.download("segments", &self.segments)?,
-            capacity: self.capacity.segments,
         })
+    }
+
+    /// The same of statistics alone: some bytes, for each frame.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn download_statistics(&self, commands: &mut Commands) -> Result<CountedByCompute, Error> {
+        commands.check(self.model.device(), "contours")?;
+        let totals = commands.download("totals", &self.totals)?;
+        Ok(CountedByCompute { totals, capacity: self.capacity.segments })
     }
 
     pub(crate) fn arguments(&self) -> &Buffer {
@@ -162,9 +175,26 @@ fn plan<'a>(
 /// What [`Contours`] held when the commands executed.
 #[derive(Debug)]
 pub struct FoundByCompute {
-    totals: Download,
+    counted: CountedByCompute,
     segments: Download,
+}
+
+/// What [`Contours`] had counted when the commands executed.
+#[derive(Debug)]
+pub struct CountedByCompute {
+    totals: Download,
     capacity: u32,
+}
+
+impl CountedByCompute {
+    /// What was found and tested.
+    ///
+    /// # Errors
+    /// If it was asked for in other commands than those that have executed.
+    pub fn statistics(&self, executed: &Executed) -> Result<Statistics, Error> {
+        let bytes = &self.totals.read(executed)?[..size_of::<Totals>()];
+        Ok(Statistics::new(&bytemuck::pod_read_unaligned(bytes), self.capacity))
+    }
 }
 
 impl FoundByCompute {
@@ -173,8 +203,7 @@ impl FoundByCompute {
     /// # Errors
     /// If it was asked for in other commands than those that have executed.
     pub fn statistics(&self, executed: &Executed) -> Result<Statistics, Error> {
-        let bytes = &self.totals.read(executed)?[..size_of::<Totals>()];
-        Ok(Statistics::new(&bytemuck::pod_read_unaligned(bytes), self.capacity))
+        self.counted.statistics(executed)
     }
 
     /// All segments, in any order.

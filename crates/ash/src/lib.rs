@@ -27,7 +27,7 @@
 //! | [`Extractor`], [`Contours`], [`LinePass`] | the same in two passes, by compute shaders and an indirect draw |
 //! | [`Canvas`], [`Surface`] | strokes of either, hidden by surfaces |
 //! | [`Picture`] | these off screen |
-//! | [`Queries`] | invocations, primitives and time, as the device counts them |
+//! | [`Queries`], [`Timer`] | invocations, primitives and time, as the device counts them |
 //!
 //! Vulkan 1.3 with `VK_EXT_mesh_shader` and dynamic rendering is needed, and subgroup operations in task and
 //! mesh shaders: see [`RequiredFeatures`]. Shaders are the WGSL of `drypoint-shaders`, compiled to SPIR-V by naga
@@ -92,7 +92,7 @@ mod shader;
 
 pub use canvas::{Canvas, Subject};
 pub use commands::{Commands, Executed, Recorded};
-pub use contours::{Capacity, Contours, FoundByCompute};
+pub use contours::{Capacity, Contours, CountedByCompute, FoundByCompute};
 pub use depth_pass::{Found, Surface};
 pub use device::{Device, Limits, OptionalFeatures, REQUIRED_EXTENSIONS, RequiredFeatures};
 pub use drypoint_shaders::{DepthOrder, LineStyle, Method, Placement, Segment, Statistics, View};
@@ -104,5 +104,5 @@ pub use mesh_contours::{FoundByMesh, MeshContours, MeshStatistics};
 pub use mesh_pass::{Attached, MeshOptions, MeshOutput, MeshPass};
 pub use model::Model;
 pub use picture::{Picture, Pixels};
-pub use queries::{Counting, Counts, Queries};
+pub use queries::{Counting, Counts, Queries, Timer};
 pub use rendering::{Attachments, Rendering};

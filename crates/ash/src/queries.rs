@@ -27,9 +27,20 @@ pub struct Queries {
     /// None where invocations have it all.
     primitives: Option<Arc<Pool>>,
     /// None where the queue has no clock.
-    times: Option<Arc<Pool>>,
+    timer: Option<Timer>,
     /// Of the commands that they are in.
     id: Option<u64>,
+}
+
+/// How long the device takes from a beginning to an end in one command buffer, whatever is drawn in between.
+#[derive(Debug)]
+pub struct Timer {
+    device: Device,
+    pool: Arc<Pool>,
+    /// Of the commands that it is in.
+    id: Option<u64>,
+    /// Begun, and not ended yet.
+    is_running: bool,
 }
 
 /// What the device has counted.
@@ -92,12 +103,12 @@ impl Queries {
                 Some(Pool::new(device, (vk::QueryType::MESH_PRIMITIVES_GENERATED_EXT, 1), none)?)
             }
         };
-        let has_clock = device.limits().timestamp_compute_and_graphics == vk::TRUE;
-        let times = has_clock
-            .then(|| Pool::new(device, (vk::QueryType::TIMESTAMP, 2), none))
-            .transpose()?;
+        let timer = match Timer::new(device) {
+            Err(Error::MissingFeature { .. }) => None,
+            timer => Some(timer?),
+        };
         let device = device.clone();
-        Ok(Self { device, counting, invocations, primitives, times, id: None })
+        Ok(Self { device, counting, invocations, primitives, timer, id: None })
     }
 
     /// Begins to count. Outside of rendering.
@@ -118,13 +129,7 @@ impl Queries {
                 device.raw().cmd_begin_query(raw, pool.raw, 0, vk::QueryControlFlags::empty());
             }
         }
-        if let Some(pool) = &self.times {
-            commands.keep(pool.clone());
-            // SAFETY: as above, of two queries.
-            unsafe { device.raw().cmd_reset_query_pool(raw, pool.raw, 0, 2) };
-            self.write_time(raw, 0);
-        }
-        Ok(())
+        self.timer.as_mut().map_or(Ok(()), |timer| timer.begin(commands))
     }
 
     /// Ends, in the same commands. Outside of rendering.
@@ -135,22 +140,16 @@ impl Queries {
         if self.id != Some(commands.id()) {
             return Err(Error::OtherCommands { what: "queries" });
         }
+        if let Some(timer) = &mut self.timer {
+            timer.end(commands)?;
+        }
         let raw = commands.raw();
-        self.write_time(raw, 1);
         let pools = [Some(&self.invocations), self.primitives.as_ref()];
         for pool in pools.into_iter().flatten() {
             // SAFETY: it was begun in these commands.
             unsafe { self.device.raw().cmd_end_query(raw, pool.raw, 0) };
         }
         Ok(())
-    }
-
-    fn write_time(&self, commands: vk::CommandBuffer, index: u32) {
-        if let Some(pool) = &self.times {
-            let stage = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
-            // SAFETY: the pool is kept, and the query was reset in these commands.
-            unsafe { self.device.raw().cmd_write_timestamp(commands, stage, pool.raw, index) };
-        }
     }
 
     /// What was counted.
@@ -177,12 +176,73 @@ impl Queries {
         if let Some(pool) = &self.primitives {
             [counts.primitives] = pool.read()?;
         }
-        if let Some(pool) = &self.times {
-            let [[begin], [end]] = [pool.read_from(0)?, pool.read_from(1)?];
-            let period = f64::from(self.device.limits().timestamp_period);
-            counts.seconds = Some(1e-9 * period * end.saturating_sub(begin) as f64);
-        }
+        counts.seconds = self.timer.as_ref().map(|timer| timer.seconds(executed)).transpose()?;
         Ok(counts)
+    }
+}
+
+impl Timer {
+    /// For one use at a time.
+    ///
+    /// # Errors
+    /// [`Error::MissingFeature`] if the device has no clock.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        if device.limits().timestamp_compute_and_graphics == vk::FALSE {
+            let feature = "timestampComputeAndGraphics";
+            return Err(Error::MissingFeature { feature, what: "a timer" });
+        }
+        let none = vk::QueryPipelineStatisticFlags::empty();
+        let pool = Pool::new(device, (vk::QueryType::TIMESTAMP, 2), none)?;
+        Ok(Self { device: device.clone(), pool, id: None, is_running: false })
+    }
+
+    /// Begins, when all that was recorded before is done. Outside of rendering.
+    ///
+    /// # Errors
+    /// If the commands are of another device.
+    pub fn begin(&mut self, commands: &mut Commands) -> Result<(), Error> {
+        commands.check(&self.device, "a timer")?;
+        (self.id, self.is_running) = (Some(commands.id()), true);
+        commands.keep(self.pool.clone());
+        let raw = commands.raw();
+        // SAFETY: no rendering is open, and the pool is kept; its two queries are not in use, as the caller waits
+        // for one use before the next.
+        unsafe { self.device.raw().cmd_reset_query_pool(raw, self.pool.raw, 0, 2) };
+        self.write(raw, 0);
+        Ok(())
+    }
+
+    /// Ends, in the same commands, when all that was recorded before is done.
+    ///
+    /// # Errors
+    /// [`Error::OtherCommands`] if it was not begun in them.
+    pub fn end(&mut self, commands: &mut Commands) -> Result<(), Error> {
+        if self.id != Some(commands.id()) || !self.is_running {
+            return Err(Error::OtherCommands { what: "a timer" });
+        }
+        self.is_running = false;
+        self.write(commands.raw(), 1);
+        Ok(())
+    }
+
+    fn write(&self, commands: vk::CommandBuffer, index: u32) {
+        let stage = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
+        // SAFETY: the pool is kept, and the query was reset in these commands.
+        unsafe { self.device.raw().cmd_write_timestamp(commands, stage, self.pool.raw, index) };
+    }
+
+    /// How long it took.
+    ///
+    /// # Errors
+    /// [`Error::OtherCommands`] if it was not begun and ended in the commands that have executed, or if the device
+    /// is lost.
+    pub fn seconds(&self, executed: &Executed) -> Result<f64, Error> {
+        if !executed.is_of(self.id) || self.is_running {
+            return Err(Error::OtherCommands { what: "a timer" });
+        }
+        let [[begin], [end]] = [self.pool.read_from(0)?, self.pool.read_from(1)?];
+        let period = f64::from(self.device.limits().timestamp_period);
+        Ok(1e-9 * period * end.saturating_sub(begin) as f64)
     }
 }
 
