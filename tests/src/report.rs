@@ -12,6 +12,7 @@ mod tables;
 pub use claims::{CONES, Claim, FAST, MESHLETS, OURS, SNCH, SNCH_SINGLE, TB24, TWO_LEVELS, claims};
 pub use gpu::{
     BRUTE_FORCE, FLOOR, GpuCalibration, GpuFrame, GpuReport, GpuRun, GpuTested, GpuTime, INSTANCES,
+    VulkanCounts, VulkanFrame,
 };
 pub use markdown::{blocks, marks, replace_blocks};
 pub use page::page;
@@ -40,6 +41,9 @@ pub struct Report {
     /// Which GPU, if there was one.
     #[serde(default)]
     pub gpu: Option<GpuRun>,
+    /// Which GPU frames were drawn on in Vulkan, if there was one.
+    #[serde(default)]
+    pub vulkan: Option<GpuRun>,
 }
 
 /// Where a benchmark ran.
@@ -103,6 +107,9 @@ pub struct MeshReport {
     /// What the cost model is made of on the GPU.
     #[serde(default)]
     pub gpu_calibration: Vec<GpuCalibration>,
+    /// Frames in Vulkan.
+    #[serde(default)]
+    pub vulkan: Vec<VulkanFrame>,
 }
 
 /// Something counted from three sets of viewpoints.
@@ -273,18 +280,28 @@ impl Report {
     /// Whether nothing was counted and timed but on a GPU.
     pub fn is_on_gpu_alone(&self) -> bool {
         let is_empty = |mesh: &MeshReport| mesh.decompositions.is_empty() && mesh.times.is_empty();
-        self.gpu.is_some() && self.meshes.iter().all(is_empty)
+        (self.gpu.is_some() || self.vulkan.is_some()) && self.meshes.iter().all(is_empty)
     }
 
-    /// What was measured on a GPU replaced by that of `other`. Only meshes that both have keep any.
+    /// What was measured on a GPU replaced by that of `other`, as far as `other` has any: what it measured with
+    /// wgpu, and in Vulkan. Only meshes that both have keep any then.
     #[must_use]
     pub fn with_gpu_of(mut self, other: &Self) -> Self {
-        self.gpu.clone_from(&other.gpu);
-        for mesh in &mut self.meshes {
-            let measured = other.mesh(&mesh.name);
-            mesh.gpu = measured.and_then(|measured| measured.gpu.clone());
-            mesh.gpu_calibration =
-                measured.map_or(Vec::new(), |measured| measured.gpu_calibration.clone());
+        if other.gpu.is_some() {
+            self.gpu.clone_from(&other.gpu);
+            for mesh in &mut self.meshes {
+                let measured = other.mesh(&mesh.name);
+                mesh.gpu = measured.and_then(|measured| measured.gpu.clone());
+                mesh.gpu_calibration =
+                    measured.map_or(Vec::new(), |measured| measured.gpu_calibration.clone());
+            }
+        }
+        if other.vulkan.is_some() {
+            self.vulkan.clone_from(&other.vulkan);
+            for mesh in &mut self.meshes {
+                let measured = other.mesh(&mesh.name);
+                mesh.vulkan = measured.map_or(Vec::new(), |measured| measured.vulkan.clone());
+            }
         }
         self
     }

@@ -25,6 +25,15 @@ struct Shared {
     _owner: Option<Box<dyn Send + Sync>>,
 }
 
+/// What comes with a device that is not the caller's.
+#[derive(Default)]
+pub(crate) struct Origin {
+    /// Goes last.
+    pub(crate) owner: Option<Box<dyn Send + Sync>>,
+    /// Lowers what work is cut to.
+    pub(crate) lower: Option<fn(&mut Limits)>,
+}
+
 /// What the device can do, as far as it matters here.
 #[derive(Clone, Debug)]
 pub(crate) struct Properties {
@@ -120,16 +129,16 @@ impl Device {
         features: OptionalFeatures,
     ) -> Result<Self, Error> {
         // SAFETY: the caller's promise.
-        unsafe { Self::new(instance, physical_device, (raw, features), (None, None)) }
+        unsafe { Self::new(instance, physical_device, (raw, features), Origin::default()) }
     }
 
     /// # Safety
-    /// As [`Device::from_raw`], until `owner` is dropped, which may destroy the device.
+    /// As [`Device::from_raw`], until the owner is dropped, which may destroy the device.
     pub(crate) unsafe fn new(
         instance: &ash::Instance,
         physical_device: vk::PhysicalDevice,
         (raw, features): (&ash::Device, OptionalFeatures),
-        (owner, lower): (Option<Box<dyn Send + Sync>>, Option<fn(&mut Limits)>),
+        Origin { owner, lower }: Origin,
     ) -> Result<Self, Error> {
         // SAFETY: the physical device is one of the instance's.
         let mut properties = unsafe { Properties::of(instance, physical_device) }

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ash::{ext, vk};
 
 use crate::commands::{Commands, Executed};
-use crate::device::{Limits, OptionalFeatures, Properties, REQUIRED_EXTENSIONS, RequiredFeatures};
+use crate::device::{
+    Limits, OptionalFeatures, Origin, Properties, REQUIRED_EXTENSIONS, RequiredFeatures,
+};
 use crate::{Device, Error};
 
 /// A device without a window, with a queue.
@@ -103,7 +105,7 @@ impl Gpu {
                 &functions,
                 physical,
                 (&raw, features),
-                (Some(Box::new(owner)), options.lower),
+                Origin { owner: Some(Box::new(owner)), lower: options.lower },
             )
         }?;
         // SAFETY: the device was made with one queue of that family.

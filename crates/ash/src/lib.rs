@@ -26,7 +26,7 @@
 //! | [`MeshPass`], [`MeshContours`] | task and mesh shaders, and what they find and draw of one model |
 //! | [`Extractor`], [`Contours`], [`LinePass`] | the same in two passes, by compute shaders and an indirect draw |
 //! | [`Canvas`], [`Surface`] | strokes of either, hidden by surfaces |
-//! | [`Picture`] | these off screen |
+//! | [`Offscreen`], [`Picture`] | lines and strokes that no window shows |
 //! | [`Queries`], [`Timer`] | invocations, primitives and time, as the device counts them |
 //!
 //! Vulkan 1.3 with `VK_EXT_mesh_shader` and dynamic rendering is needed, and subgroup operations in task and
@@ -84,6 +84,7 @@ mod memory;
 mod mesh_contours;
 mod mesh_pass;
 mod model;
+mod offscreen;
 mod picture;
 mod pipeline;
 mod queries;
@@ -103,6 +104,7 @@ pub use line_pass::LinePass;
 pub use mesh_contours::{FoundByMesh, MeshContours, MeshStatistics};
 pub use mesh_pass::{Attached, MeshOptions, MeshOutput, MeshPass};
 pub use model::Model;
-pub use picture::{Picture, Pixels};
+pub use offscreen::{Offscreen, Pixels};
+pub use picture::Picture;
 pub use queries::{Counting, Counts, Queries, Timer};
 pub use rendering::{Attachments, Rendering};

@@ -198,6 +198,10 @@ impl Image {
         self.shared.raw
     }
 
+    pub(crate) fn device(&self) -> &Device {
+        &self.shared.device
+    }
+
     pub(crate) fn view(&self) -> vk::ImageView {
         *self.shared.view.get().expect("an image that was made has a view")
     }

@@ -1,5 +1,8 @@
 //! The validation layers are on: they object to what is planted here, of both kinds.
-#![allow(unsafe_code, reason = "errors are planted by raw handles, as this crate lets none be made")]
+#![allow(
+    unsafe_code,
+    reason = "errors are planted by raw handles, as this crate lets none be made"
+)]
 
 #[path = "support/raw.rs"]
 mod raw;

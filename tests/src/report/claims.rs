@@ -2,7 +2,7 @@
 
 use super::paper::TB24_TESTED_SHARE;
 use super::tables::count;
-use super::{Decomposition, FLOOR, INSTANCES, Report};
+use super::{Decomposition, FLOOR, INSTANCES, Report, VulkanFrame};
 
 /// A claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub const MESHLETS: &str = "meshlets";
 
 /// On the bunny, if it was measured: per view, mean of the 252 viewpoints. And of GPUs.
 pub fn claims(report: &Report) -> Vec<Claim> {
-    [of_counts(report), of_gpu(report)].concat()
+    [of_counts(report), of_gpu(report), of_vulkan(report)].concat()
 }
 
 fn of_counts(report: &Report) -> Vec<Claim> {
@@ -103,6 +103,41 @@ fn of_gpu(report: &Report) -> Vec<Claim> {
         }
     }
     claims
+}
+
+/// How many times as long as the compute pipeline mesh shaders may take for a frame, and how many times as fast
+/// culling is to make them.
+const OF_COMPUTE: f64 = 1.2;
+const OVER_NO_CULLING: f64 = 3.0;
+
+/// Of the bunny; a processor that plays the GPU says nothing.
+fn of_vulkan(report: &Report) -> Vec<Claim> {
+    let gpu = report.vulkan.as_ref().filter(|gpu| !gpu.is_software);
+    let mesh = report.mesh("stanford-bunny");
+    let is_ours = |frame: &&VulkanFrame| frame.is_mesh && frame.name == OURS;
+    let frame = mesh.and_then(|mesh| mesh.vulkan.iter().find(is_ours));
+    let Some((gpu, frame)) = gpu.zip(frame) else { return Vec::new() };
+    let why = format!("Measured on {}.", gpu.device);
+    let (of_compute, faster) = (frame.of_compute.median, frame.over_brute_force.median);
+    vec![
+        Claim {
+            what: format!(
+                "a frame of {INSTANCES} bunnies takes mesh shaders {OF_COMPUTE} times as long as compute shaders \
+                 at most"
+            ),
+            measured: format!("{of_compute:.2}"),
+            holds: of_compute <= OF_COMPUTE,
+            why: why.clone(),
+        },
+        Claim {
+            what: format!(
+                "culling makes mesh shaders {OVER_NO_CULLING} times as fast on {INSTANCES} bunnies"
+            ),
+            measured: format!("{faster:.1}"),
+            holds: faster >= OVER_NO_CULLING,
+            why,
+        },
+    ]
 }
 
 fn hierarchy(ours: &Decomposition, snch: &Decomposition) -> [Claim; 2] {

@@ -89,6 +89,47 @@ pub struct GpuFrame {
     pub recording: Quartiles,
 }
 
+/// A frame in Vulkan that finds contours and draws them as lines, in one pass or in two.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VulkanFrame {
+    /// How edges are grouped; [`BRUTE_FORCE`] without culling.
+    pub name: String,
+    /// Whether by task and mesh shaders in one pass, or by compute shaders and an indirect draw.
+    pub is_mesh: bool,
+    /// Milliseconds of the GPU.
+    pub millis: Quartiles,
+    /// How many times as fast as the same pipeline without culling.
+    pub over_brute_force: Quartiles,
+    /// As a multiple of what the compute pipeline takes with the same groups.
+    pub of_compute: Quartiles,
+    /// What was counted.
+    pub counts: VulkanCounts,
+}
+
+/// What is counted in one frame, all instances together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VulkanCounts {
+    /// Contour edges, by shaders' own counts.
+    pub lines: u64,
+    /// Patches that were not culled, counted as
+    /// [`Content::patches`](drypoint_shaders::Content::patches) counts them; of mesh shaders.
+    pub survivors: u64,
+    /// Mesh workgroups that survivors need, by shaders' own counts.
+    pub mesh_workgroups: u64,
+    /// Those of them that found no contour edge.
+    pub idle_mesh_workgroups: u64,
+    /// By the device's count, as all that follows.
+    pub compute_invocations: u64,
+    /// Of vertex shaders.
+    pub vertex_invocations: u64,
+    /// Of task shaders.
+    pub task_invocations: u64,
+    /// Of mesh shaders.
+    pub mesh_invocations: u64,
+    /// Lines.
+    pub primitives: u64,
+}
+
 /// What the cost model is made of (TB24 §4.2), with shaders of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GpuCalibration {

@@ -1,8 +1,8 @@
 //! Tables of what was measured on a GPU.
 
-use super::gpu::{GpuCalibration, GpuFrame, GpuTime};
+use super::gpu::{GpuCalibration, GpuFrame, GpuTime, VulkanFrame};
 use super::tables::{Table, count, ratio};
-use super::{BRUTE_FORCE, MeshReport, Quartiles, Report};
+use super::{BRUTE_FORCE, GpuRun, MeshReport, Quartiles, Report};
 use crate::viewpoints::DISTANCES;
 
 /// What is said wherever a processor plays the GPU.
@@ -19,10 +19,36 @@ const FRAMES_NOTE: &str = "252 instances, since other numbers that TB24 draws ar
     Every instance is in a cell of the picture, as its viewpoint sees it. \"Recording\" is what the processor \
     takes to make the command buffer of the extraction. After TB24, Table 6, its first pipeline.";
 
+const VULKAN_NOTE: &str = "The same frames in Vulkan, on one device with one driver: contours by compute shaders and \
+    an indirect draw of lines, or by task and mesh shaders in one pass. Both draw the same picture. Invocations and \
+    primitives are what the device itself counts; mesh workgroups, those that survivors need and those of them \
+    that found no contour edge, are what shaders count. \"Survivors\" are patches in pieces of 256 edges at \
+    most. After TB24, Table 6.";
+
 /// Of one mesh; without rows where nothing was measured.
-pub(super) fn tables(report: &Report, mesh: &MeshReport) -> [Table; 4] {
-    let is_software = report.gpu.as_ref().is_some_and(|gpu| gpu.is_software);
-    let table = |[name, title]: [&str; 2], note, head: [&[&'static str]; 2], rows| Table {
+pub(super) fn tables(report: &Report, mesh: &MeshReport) -> Vec<Table> {
+    let is_software = |run: &Option<GpuRun>| run.as_ref().is_some_and(|gpu| gpu.is_software);
+    let vulkan = made(
+        (mesh, is_software(&report.vulkan)),
+        ["vulkan", "frames in Vulkan"],
+        VULKAN_NOTE,
+        [VULKAN, VULKAN_IN_SOFTWARE],
+        mesh.vulkan.iter().map(vulkan_frame).collect(),
+    );
+    let mut tables = of_wgpu(mesh, is_software(&report.gpu)).to_vec();
+    tables.push(vulkan);
+    tables
+}
+
+/// A table, with what has to be said where a processor plays the GPU.
+fn made(
+    (mesh, is_software): (&MeshReport, bool),
+    [name, title]: [&str; 2],
+    note: &'static str,
+    head: [&[&'static str]; 2],
+    rows: Vec<Vec<String>>,
+) -> Table {
+    Table {
         mesh: Some(mesh.name.clone()),
         name: format!("{}-{name}", mesh.name),
         title: if is_software {
@@ -33,7 +59,11 @@ pub(super) fn tables(report: &Report, mesh: &MeshReport) -> [Table; 4] {
         note,
         head: head[usize::from(is_software)].to_vec(),
         rows,
-    };
+    }
+}
+
+fn of_wgpu(mesh: &MeshReport, is_software: bool) -> [Table; 4] {
+    let table = |names, note, head, rows| made((mesh, is_software), names, note, head, rows);
     let (times, frames) = match &mesh.gpu {
         Some(gpu) => (&gpu.times[..], &gpu.frames[..]),
         None => (&[][..], &[][..]),
@@ -113,6 +143,38 @@ const FRAMES_IN_SOFTWARE: &[&str] = &[
     "over no culling (software)",
     "recording, µs",
 ];
+const VULKAN: &[&str] = &[
+    "frame of 252 instances",
+    "pipeline",
+    "lines",
+    "ms",
+    "over no culling",
+    "times the compute pipeline's",
+    "survivors",
+    "mesh workgroups",
+    "idle",
+    "compute invocations",
+    "vertex",
+    "task",
+    "mesh",
+    "primitives",
+];
+const VULKAN_IN_SOFTWARE: &[&str] = &[
+    "frame of 252 instances",
+    "pipeline",
+    "lines",
+    "ms (software)",
+    "over no culling (software)",
+    "times the compute pipeline's (software)",
+    "survivors",
+    "mesh workgroups",
+    "idle",
+    "compute invocations",
+    "vertex",
+    "task",
+    "mesh",
+    "primitives",
+];
 const CALIBRATION: &[&str] =
     &["lanes", "subgroups", "t_e", "t_P / t_e", "t_A / t_e", "brute force, ms", "patches, ms"];
 const CALIBRATION_IN_SOFTWARE: &[&str] = &[
@@ -156,6 +218,34 @@ fn frame(frame: &GpuFrame) -> Vec<String> {
         ratio(frame.over_brute_force),
         three(&frame.recording),
     ]
+}
+
+fn vulkan_frame(frame: &VulkanFrame) -> Vec<String> {
+    let counts = &frame.counts;
+    let pipeline = if frame.is_mesh { "task and mesh" } else { "compute" };
+    // What a pipeline does not have stays empty.
+    let number = |number: u64, is_there: bool| {
+        if is_there { count(number as f64) } else { String::new() }
+    };
+    let times = [
+        three(&frame.millis),
+        ratio(frame.over_brute_force),
+        if frame.is_mesh { ratio(frame.of_compute) } else { String::new() },
+    ];
+    let is_mesh = frame.is_mesh;
+    let counts = [
+        number(counts.survivors, is_mesh && frame.name != BRUTE_FORCE),
+        number(counts.mesh_workgroups, is_mesh),
+        number(counts.idle_mesh_workgroups, is_mesh),
+        number(counts.compute_invocations, !is_mesh),
+        number(counts.vertex_invocations, !is_mesh),
+        number(counts.task_invocations, is_mesh),
+        number(counts.mesh_invocations, is_mesh),
+        number(counts.primitives, true),
+    ];
+    let lines = count(frame.counts.lines as f64);
+    let names = [frame.name.clone(), pipeline.to_owned(), lines];
+    names.into_iter().chain(times).chain(counts).collect()
 }
 
 fn calibration(calibration: &GpuCalibration) -> Vec<String> {

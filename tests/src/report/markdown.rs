@@ -8,8 +8,8 @@ use super::{GpuRun, Report, Run, claims, tables};
 const START: &str = "<!-- measured: ";
 const END: &str = "<!-- end -->";
 
-/// What belongs between marks, by name: a table for each of [`tables`], `machine`, `claims`, and `gpu` if
-/// there was one.
+/// What belongs between marks, by name: a table for each of [`tables`], `machine`, `claims`, and `gpu`
+/// and `vulkan` if there were such.
 pub fn blocks(report: &Report) -> Vec<(String, String)> {
     let mut blocks: Vec<(String, String)> =
         tables(report).iter().map(|table| (table.name.clone(), markdown(table))).collect();
@@ -26,10 +26,12 @@ pub fn blocks(report: &Report) -> Vec<(String, String)> {
             of_run(&report.run),
         ),
     ));
-    blocks.extend(report.gpu.iter().map(|gpu| {
-        let text = format!("{}; {}\n", device(gpu), of_run(&gpu.run));
-        ("gpu".to_owned(), text)
-    }));
+    for (name, gpu) in [("gpu", &report.gpu), ("vulkan", &report.vulkan)] {
+        blocks.extend(
+            gpu.iter()
+                .map(|gpu| (name.to_owned(), format!("{}; {}\n", device(gpu), of_run(&gpu.run)))),
+        );
+    }
     let claim = |claim: &super::Claim| {
         let (holds, why) =
             if claim.holds { ("holds", "") } else { ("does not hold", &claim.why[..]) };

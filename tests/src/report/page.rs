@@ -73,7 +73,7 @@ pub fn page(report: &Report) -> Result<String, String> {
     Ok(markup.into_string())
 }
 
-fn provenance(Report { machine, run, gpu, .. }: &Report) -> Markup {
+fn provenance(Report { machine, run, gpu, vulkan, .. }: &Report) -> Markup {
     html! {
         p {
             "Drypoint " (run.version) ", commit " (run.commit) ", " code { (run.command) } ", "
@@ -83,6 +83,7 @@ fn provenance(Report { machine, run, gpu, .. }: &Report) -> Markup {
             (machine.instructions) " kernels, " (format!("{:.0}", machine.memory)) " GB, "
             (machine.system) "."
             @if let Some(gpu) = gpu { " GPU: " (device(gpu)) "." }
+            @if let Some(vulkan) = vulkan { " Vulkan: " (device(vulkan)) "." }
         }
     }
 }
@@ -168,8 +169,10 @@ mod tests {
                 drawing: Vec::new(),
                 gpu: None,
                 gpu_calibration: Vec::new(),
+                vulkan: Vec::new(),
             }],
             gpu: None,
+            vulkan: None,
         }
     }
 
@@ -239,6 +242,39 @@ mod tests {
         report
     }
 
+    /// Three times as fast as without culling, and half as much again as the compute pipeline.
+    fn vulkan_frame() -> VulkanFrame {
+        let one = |median| Quartiles { low: median, median, high: median };
+        let counts = VulkanCounts { lines: 1234, primitives: 1234, ..VulkanCounts::default() };
+        VulkanFrame {
+            name: OURS.to_owned(),
+            is_mesh: true,
+            millis: one(2.0),
+            over_brute_force: one(3.5),
+            of_compute: one(1.5),
+            counts,
+        }
+    }
+
+    #[test]
+    fn frames_in_vulkan_are_on_the_page_and_held_against_what_was_promised() {
+        for is_software in [false, true] {
+            let mut report = report_on_gpu(is_software);
+            report.vulkan = report.gpu.take();
+            report.meshes[0].gpu = None;
+            report.meshes[0].vulkan = vec![vulkan_frame()];
+            let text = page(&report).unwrap();
+            assert!(text.contains("Vulkan: A GPU") && text.contains("<td>task and mesh</td>"));
+            let table = tables(&report).into_iter().find(|t| t.name.ends_with("-vulkan")).unwrap();
+            assert!(table.rows.iter().all(|row| row.len() == table.head.len()));
+            assert_eq!(table.title.contains("they say nothing about GPUs"), is_software);
+            let of_vulkan = |claim: &&Claim| claim.what.contains("mesh shaders");
+            let all = claims(&report);
+            let held: Vec<bool> = all.iter().filter(of_vulkan).map(|claim| claim.holds).collect();
+            assert_eq!(held, if is_software { vec![] } else { vec![false, true] });
+        }
+    }
+
     #[test]
     fn a_gpu_is_named_and_claims_are_held_against_it() {
         let report = report_on_gpu(false);
@@ -281,13 +317,24 @@ mod tests {
         let (other, mut on_gpu) = (report("stanford-bunny"), report_on_gpu(false));
         let both = other.clone().with_gpu_of(&on_gpu);
         assert_eq!(both, on_gpu);
-        assert_eq!(both.clone().with_gpu_of(&other), other);
+        // What was not measured again stays.
+        assert_eq!(both.clone().with_gpu_of(&other), both);
         assert!(!both.is_on_gpu_alone() && !other.is_on_gpu_alone());
         on_gpu.meshes[0].decompositions.clear();
         assert!(on_gpu.is_on_gpu_alone());
         assert_eq!(other.with_gpu_of(&on_gpu), both);
+        let mut in_vulkan = on_gpu.clone();
+        in_vulkan.gpu = None;
+        in_vulkan.vulkan.clone_from(&on_gpu.gpu);
+        in_vulkan.meshes[0].vulkan = vec![vulkan_frame()];
+        assert!(in_vulkan.is_on_gpu_alone());
+        let all = both.clone().with_gpu_of(&in_vulkan);
+        assert_eq!((&all.gpu, &all.vulkan), (&both.gpu, &in_vulkan.vulkan));
+        assert_eq!(all.meshes[0].vulkan.len(), 1);
+        assert_eq!(all.meshes[0].gpu, both.meshes[0].gpu);
         on_gpu.meshes[0].name = "another".to_owned();
-        assert_eq!(both.with_gpu_of(&on_gpu).meshes[0].gpu, None);
+        let both = all.with_gpu_of(&on_gpu);
+        assert_eq!((&both.meshes[0].gpu, both.meshes[0].vulkan.len()), (&None, 1));
     }
 
     #[test]

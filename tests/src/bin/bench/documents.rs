@@ -10,11 +10,9 @@ use crate::{Options, Section, name, read, write};
 /// Whether this is the repository, and a run on `files` can fill in all of its tables.
 pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> Result<(), String> {
     let documents = documents(repository)?;
-    let on_gpu = [Section::Gpu, Section::GpuCalibration];
-    let is_on_gpu_alone = on_gpu.iter().all(|section| options.only.contains(section))
-        && options.only.iter().all(|section| on_gpu.contains(section));
-    if options.quick || !(options.only.is_empty() || is_on_gpu_alone) {
-        let sections = "no --only but gpu and gpu-calibration, both of them";
+    let [has_gpu, has_vulkan] = gpu_alone(options);
+    if options.quick || !(options.only.is_empty() || has_gpu || has_vulkan) {
+        let sections = "no --only but vulkan, or gpu and gpu-calibration, both of them";
         return Err(format!("--docs takes a whole run: no --quick, and {sections}"));
     }
     let meshes: Vec<String> = files.iter().map(|path| name(path)).collect();
@@ -24,7 +22,9 @@ pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> 
                 mark.strip_prefix(&mesh[..]).is_some_and(|table| table.starts_with('-'))
             };
             // The rest stays as it is.
-            let is_kept = is_on_gpu_alone && !mark.contains("-gpu");
+            let is_measured =
+                has_gpu && mark.contains("-gpu") || has_vulkan && mark.ends_with("-vulkan");
+            let is_kept = (has_gpu || has_vulkan) && !is_measured;
             is_kept || !mark.contains('-') || meshes.iter().any(is_of)
         };
         if let Some(mark) = marks(text).find(|mark| !is_filled(mark)) {
@@ -37,14 +37,25 @@ pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> 
     Ok(())
 }
 
+/// Whether nothing is asked for but what is measured on a GPU: with wgpu, in Vulkan, or both.
+fn gpu_alone(options: &Options) -> [bool; 2] {
+    let kinds = [&[Section::Gpu, Section::GpuCalibration][..], &[Section::Vulkan]];
+    let is_of_any = |section: &Section| kinds.iter().any(|kind| kind.contains(section));
+    let is_asked = |section: &Section| options.only.contains(section);
+    let is_whole = |kind: &&[Section]| kind.iter().all(is_asked) || !kind.iter().any(is_asked);
+    let is_alone = options.only.iter().all(is_of_any) && kinds.iter().all(is_whole);
+    kinds.map(|kind| is_alone && kind.iter().any(is_asked))
+}
+
 /// Writes the summary, and the marked tables. What was measured on a GPU comes from another machine than
 /// the rest where only one of both was measured now, and the other is kept.
 pub(crate) fn update(repository: &Path, report: Report) -> Result<(), String> {
     let kept = read(&repository.join(SUMMARY));
     let report = match (report.is_on_gpu_alone(), kept) {
         (true, kept) => kept?.with_gpu_of(&report),
-        (false, Ok(kept)) if report.gpu.is_none() => report.with_gpu_of(&kept),
-        (false, _) => report,
+        // What was measured now comes last.
+        (false, Ok(kept)) => report.clone().with_gpu_of(&kept).with_gpu_of(&report),
+        (false, Err(_)) => report,
     };
     let report = report.summary();
     let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;

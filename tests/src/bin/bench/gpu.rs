@@ -1,10 +1,10 @@
 //! Extraction on a GPU: all viewpoints of the protocol as instances of one model, in one go (Tsiapkolis
 //! and Bénard, CGF 2024, §4.3). Times are the GPU's own; answers are compared with the definition first.
 
-mod check;
-mod frames;
+pub(crate) mod check;
+pub(crate) mod frames;
 mod reading;
-mod variants;
+pub(crate) mod variants;
 
 pub(crate) mod calibrate;
 
@@ -20,7 +20,7 @@ use self::variants::{Grouped, Variant, groupings};
 use crate::{Options, Section};
 
 /// Which edges are looked at.
-const FILTER: EdgeFilter = EdgeFilter::Convex;
+pub(crate) const FILTER: EdgeFilter = EdgeFilter::Convex;
 
 /// What can be recorded into a compute pass for any number of instances.
 trait Work {

@@ -11,6 +11,7 @@ mod gpu;
 mod kept;
 mod machine;
 mod measure;
+mod vulkan;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ struct Options {
     fresh: bool,
     /// Also write what was measured to docs/measurements.json of this repository, and into the
     /// marked tables of its documents, all of whose meshes must be given. With --only gpu and --only
-    /// gpu-calibration, and for the report of such a run, the rest stays as it is
+    /// gpu-calibration, or with --only vulkan, or for the report of such a run, the rest stays as it is
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
     /// Measure nothing: make the page and the tables from a report.json, or from the repository's
@@ -75,6 +76,8 @@ enum Section {
     Gpu,
     /// What the cost model is made of on a GPU, by the width of workgroups
     GpuCalibration,
+    /// Frames in Vulkan, by task and mesh shaders and by compute shaders
+    Vulkan,
 }
 
 impl Options {
@@ -113,22 +116,29 @@ fn run(options: &Options) -> Result<(), String> {
         documents::check(repository, options, &files)?;
     }
     let kept = Kept::new(options)?;
-    let gpu = gpu::device(options)?;
+    let devices = Devices { gpu: gpu::device(options)?, vulkan: vulkan::device(options)? };
     let mut meshes = Vec::new();
     for path in &files {
         let model = io::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        meshes.push(measure::mesh(&name(path), &model.mesh, options, (&kept, gpu.as_ref()))?);
+        meshes.push(measure::mesh(&name(path), &model.mesh, options, (&kept, &devices))?);
     }
     if files.is_empty() {
         for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
             let mesh = shapes::by_name(name, SHAPE_FACES).ok_or(format!("no shape {name}"))?;
-            meshes.push(measure::mesh(name, &mesh, options, (&kept, gpu.as_ref()))?);
+            meshes.push(measure::mesh(name, &mesh, options, (&kept, &devices))?);
         }
     }
     kept.finish();
     let run = machine::run(options);
-    let gpu = gpu.map(|gpu| gpu::run(&gpu, run.clone()));
-    finish(options, &Report { machine: machine::machine(), run, meshes, gpu })
+    let gpu = devices.gpu.map(|gpu| gpu::run(&gpu, run.clone()));
+    let vulkan = devices.vulkan.map(|gpu| vulkan::run(&gpu, run.clone()));
+    finish(options, &Report { machine: machine::machine(), run, meshes, gpu, vulkan })
+}
+
+/// GPUs that are wanted and there.
+struct Devices {
+    gpu: Option<drypoint_wgpu::Gpu>,
+    vulkan: Option<drypoint_ash::Gpu>,
 }
 
 /// A report of an earlier run.

@@ -3,18 +3,18 @@
 use drypoint_fusion::mesh_hash;
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_tests::report::MeshReport;
-use drypoint_wgpu::Gpu;
 
 use crate::decompositions::Subject;
 use crate::kept::Kept;
-use crate::{Options, Section, calibrate, contenders, drawing, gpu as on_gpu};
+use crate::{Devices, Options, Section, calibrate, contenders, drawing, gpu as on_gpu, vulkan};
 
 pub(crate) fn mesh(
     name: &str,
     mesh: &Mesh,
     options: &Options,
-    (kept, gpu): (&Kept, Option<&Gpu>),
+    (kept, devices): (&Kept, &Devices),
 ) -> Result<MeshReport, String> {
+    let gpu = devices.gpu.as_ref();
     let fail = |why: String| format!("{name}: {why}");
     let adjacency = MeshAdjacency::new(mesh);
     let subject = |filter| Subject::new((name, mesh, &adjacency), filter, (options, kept));
@@ -61,6 +61,14 @@ pub(crate) fn mesh(
             Some((gpu, what)) => {
                 let key = format!("{key} {}", gpu.name());
                 let measure = || on_gpu::calibrate::measure(gpu, mesh, &adjacency, rounds);
+                kept.or_measure(&what, &key, measure).map_err(fail)?
+            }
+            None => Vec::new(),
+        },
+        vulkan: match devices.vulkan.as_ref().zip(timed(Section::Vulkan, "Vulkan")) {
+            Some((gpu, what)) => {
+                let key = format!("{key} {} {}", options.quick, gpu.device().name());
+                let measure = || vulkan::measure(gpu, mesh, &adjacency, options);
                 kept.or_measure(&what, &key, measure).map_err(fail)?
             }
             None => Vec::new(),

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::FILTER;
 
 /// Contour edges from each placement, by the definition.
-pub(super) struct Seen<'a> {
+pub(crate) struct Seen<'a> {
     mesh: &'a Mesh,
     adjacency: &'a MeshAdjacency,
     views: Vec<(Viewpoint, Vec<EdgeId>)>,
@@ -17,7 +17,7 @@ pub(super) struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     /// Placements must not flatten the mesh. On all threads.
-    pub(super) fn new(
+    pub(crate) fn new(
         mesh: &'a Mesh,
         adjacency: &'a MeshAdjacency,
         placements: &[Placement],
@@ -34,13 +34,13 @@ impl<'a> Seen<'a> {
 
     /// Segments that there should be room for: those of the definition and some more, since f32 may take
     /// other edges for contours.
-    pub(super) fn capacity(&self) -> u32 {
+    pub(crate) fn capacity(&self) -> u32 {
         let all: usize = self.views.iter().map(|(_, edges)| edges.len()).sum();
         u32::try_from(all + all / 16 + 1024).unwrap_or(u32::MAX)
     }
 
     /// How many edges a view tests on the CPU, on average.
-    pub(super) fn edges_tested(&self, judge: &dyn Judge) -> f64 {
+    pub(crate) fn edges_tested(&self, judge: &dyn Judge) -> f64 {
         let test = |found: &mut Vec<EdgeId>, (viewpoint, _): &(Viewpoint, _)| {
             judge.extract(*viewpoint, found).edges
         };
@@ -53,7 +53,7 @@ impl<'a> Seen<'a> {
     ///
     /// # Errors
     /// An edge that is found twice, with ends that are not its own, or otherwise than f32 may.
-    pub(super) fn compare(&self, found: &[Segment], frame: &Frame) -> Result<usize, String> {
+    pub(crate) fn compare(&self, found: &[Segment], frame: &Frame) -> Result<usize, String> {
         let mut of_views = vec![Vec::new(); self.views.len()];
         for segment in found {
             let edges = of_views.get_mut(segment.placement as usize);

@@ -16,7 +16,8 @@ use crate::Options;
 
 const SOURCE: &str = include_str!("lines.wgsl");
 
-const SIZE: wgpu::Extent3d = wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
+pub(crate) const SIZE: wgpu::Extent3d =
+    wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -29,7 +30,7 @@ const DRAWN: [&str; 3] = [BRUTE_FORCE, OURS, TWO_LEVELS];
 
 /// Each instance in a cell of the picture, turned so that it shows what its viewpoint sees; drawn in
 /// parallel, and so at one size.
-fn placements(mesh: &Mesh) -> Vec<Placement> {
+pub(crate) fn placements(mesh: &Mesh) -> Vec<Placement> {
     let Some(bounds) = mesh.bounds() else { return Vec::new() };
     let (center, unit) = (bounds.center(), bounds.half_longest_side());
     let place = |(index, viewpoint): (usize, Viewpoint)| {
@@ -219,10 +220,10 @@ impl<'a> Frames<'a> {
 }
 
 /// Most frames for each round: one is little, and what recording takes varies.
-const MOST_FRAMES: u32 = 30;
+pub(crate) const MOST_FRAMES: u32 = 30;
 
 /// Seconds for a round, unless a frame takes more.
-fn seconds_per_round(options: &Options) -> f64 {
+pub(crate) fn seconds_per_round(options: &Options) -> f64 {
     if options.quick { 0.2 } else { 1.0 }
 }
 

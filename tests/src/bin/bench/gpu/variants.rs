@@ -50,25 +50,21 @@ impl Work for Variant<'_> {
 }
 
 /// Edges in groups, or one by one.
-pub(super) struct Grouped<'a> {
-    pub(super) name: &'static str,
-    pub(super) content: Content,
+pub(crate) struct Grouped<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) content: Content,
     /// What does the same on the CPU, with exact predicates; none for edges one by one.
-    pub(super) judge: Option<Box<dyn Judge + 'a>>,
+    pub(crate) judge: Option<Box<dyn Judge + 'a>>,
 }
 
 /// For each variant, brute force first. Our own patches are made for GPUs. The published ones are left
 /// out where things must be quick.
-pub(super) fn groupings<'a>(
+pub(crate) fn groupings<'a>(
     mesh: &'a Mesh,
     adjacency: &MeshAdjacency,
     is_quick: bool,
 ) -> Result<Vec<Grouped<'a>>, String> {
-    let patches = |name, params: FusionParams| {
-        let set = fused(mesh, adjacency, FILTER, &params)?;
-        let content = Content::new(&[&set]);
-        Ok::<_, String>(Grouped { name, content, judge: Some(Box::new(set)) })
-    };
+    let patches = |name, params| patches(name, mesh, adjacency, &params);
     let ours = FusionParams { cost: CostModel::GPU, ..FusionParams::DEFAULT };
     let edges = Content::without_patches(mesh, adjacency, FILTER);
     let mut groupings = vec![
@@ -85,4 +81,16 @@ pub(super) fn groupings<'a>(
     let content = Content::with_groups(mesh.positions(), edges, groups);
     groupings.push(Grouped { name: MESHLETS, content, judge: Some(Box::new(meshlets)) });
     Ok(groupings)
+}
+
+/// Patches made anew.
+pub(crate) fn patches<'a>(
+    name: &'static str,
+    mesh: &Mesh,
+    adjacency: &MeshAdjacency,
+    params: &FusionParams,
+) -> Result<Grouped<'a>, String> {
+    let set = fused(mesh, adjacency, FILTER, params)?;
+    let content = Content::new(&[&set]);
+    Ok(Grouped { name, content, judge: Some(Box::new(set)) })
 }
