@@ -69,6 +69,7 @@ Examples:
   drypoint draw bunny.obj --show patches --preset fast -o bunny.png
   drypoint draw bunny.patches --model bunny.obj --show survivors --view front -o bunny.png
   drypoint draw dragon.ply --method wgpu -o dragon.png
+  drypoint draw dragon.ply --method ash -o dragon.png
 
 With --json prints one object: for each class of lines chains, segments, visible_length and
 hidden_length in pixels; and with --show patches or survivors in `patches` the numbers of edges,
@@ -78,7 +79,7 @@ pub(crate) struct DrawArgs {
     #[arg(default_value = "shape:torus-knot:20000")]
     pub(crate) model: PathBuf,
     /// Picture to write, .svg or .png; - for SVG on standard output [default: MODEL's name, .svg, in
-    /// this folder; .png with --method wgpu]
+    /// this folder; .png with --method wgpu or ash]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The mesh that a .patches file was built from: its triangles hide lines
@@ -112,6 +113,8 @@ pub(crate) enum DrawMethod {
     Cpu,
     /// A GPU, in one frame: contours alone, those that are visible, as PNG
     Wgpu,
+    /// As wgpu, by mesh shaders: needs a Vulkan 1.3 driver that has them
+    Ash,
 }
 
 /// What is on the page.
@@ -175,7 +178,7 @@ pub(crate) struct ViewArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Lines")]
 pub(crate) struct LineArgs {
-    /// Classes of lines to draw [default: contour,boundary; contour with --method wgpu]
+    /// Classes of lines to draw [default: contour,boundary; contour with --method wgpu or ash]
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(crate) lines: Option<Vec<Class>>,
     /// With --lines crease: draw edges that bend by this angle or more, in degrees [default: 30]
@@ -185,7 +188,7 @@ pub(crate) struct LineArgs {
     #[arg(long, value_enum, default_value = "none")]
     pub(crate) hidden: Hidden,
     /// Leave out visible pieces shorter than this that touch no longer line, in pixels: the noise
-    /// of scans. 0 draws all [default: 6; 0 with --method wgpu]
+    /// of scans. 0 draws all [default: 6; 0 with --method wgpu or ash]
     #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
     pub(crate) specks: Option<f64>,
     /// Width of the lines in pixels
@@ -327,6 +330,8 @@ pub(crate) enum Method {
     Patches,
     /// As patches, on a GPU: in f32, so that an edge may differ where a face is seen edge-on
     Wgpu,
+    /// As wgpu, by mesh shaders: needs a Vulkan 1.3 driver that has them
+    Ash,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -12,8 +12,8 @@ use drypoint_lines::{
 use drypoint_mesh::{EdgeFilter, EdgeId, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
-use crate::args::{Class, DrawArgs, DrawMethod, Hidden, LineArgs, Show};
-use crate::gpu;
+use crate::args::{Class, DrawArgs, Hidden, LineArgs, Show};
+use crate::gpu::{self, Api};
 use crate::output::{Output, print_json, tell};
 use crate::patches;
 use crate::progress::Stage;
@@ -60,8 +60,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     let style = style(&args.lines)?;
     let options = options(&args.lines)?;
     let shown = shown(args)?;
-    if args.method == DrawMethod::Wgpu {
-        return run_on_gpu(args, &style);
+    if let Some(api) = args.method.api() {
+        return run_on_gpu(api, args, &style);
     }
     let path = match &args.output {
         Some(path) => path.clone(),
@@ -108,14 +108,15 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
 }
 
 /// Draws with a GPU, which has its own way of finding what is visible.
-fn run_on_gpu(args: &DrawArgs, style: &Style) -> Result<(), String> {
-    gpu::check(args)?;
+fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
+    api.check_feature()?;
+    api.check_options(args)?;
     let path = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.png", source::stem(&args.model))),
     };
     if format_of(&path)? != Format::Png {
-        return Err(format!("{}: --method wgpu draws .png alone", path.display()));
+        return Err(format!("{}: --method {api} draws .png alone", path.display()));
     }
     let output = Output::open(&path)?;
     let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
@@ -124,7 +125,8 @@ fn run_on_gpu(args: &DrawArgs, style: &Style) -> Result<(), String> {
     let patches = patches.map(|patches| chosen(args, patches)).transpose()?;
     let picture = {
         let _stage = Stage::new("drawing");
-        gpu::draw(&source, &adjacency, patches.as_ref(), &camera, style)?
+        let scene = Scene { source: &source, adjacency: &adjacency, camera: &camera };
+        gpu::draw(api, &scene, patches.as_ref(), style)?
     };
     output.write(&picture)?;
     if args.output.is_none() {
@@ -177,10 +179,10 @@ fn chosen(args: &DrawArgs, patches: PatchSet) -> Result<PatchSet, String> {
 }
 
 /// What is drawn, and from where.
-struct Scene<'a> {
-    source: &'a Source,
-    adjacency: &'a MeshAdjacency,
-    camera: &'a Camera,
+pub(crate) struct Scene<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) adjacency: &'a MeshAdjacency,
+    pub(crate) camera: &'a Camera,
 }
 
 impl Scene<'_> {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::args::{ExtractArgs, Method};
-use crate::gpu;
+use crate::gpu::{self, Api};
 use crate::output::{print, print_json};
 use crate::patches;
 use crate::source::{Source, holding, is_patches, load_patches};
@@ -31,12 +31,14 @@ struct Found {
 pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     let viewpoint = viewpoint(args)?;
     let has_patches = is_patches(&args.model);
-    let fuses = matches!(args.method, Some(Method::Patches | Method::Wgpu)) && !has_patches;
+    let fuses = args.method.is_some_and(goes_through_patches) && !has_patches;
     if let Some(option) = args.fusion.first_given().filter(|_| !fuses) {
         return Err(format!(
-            "{option}: is for building patches: --method patches or wgpu on a mesh"
+            "{option}: is for building patches: --method patches, wgpu or ash on a mesh"
         ));
     }
+    // What cannot be done is told before the mesh is read.
+    args.method.and_then(Method::api).map_or(Ok(()), Api::check_feature)?;
     let found =
         if has_patches { from_patch_file(args, viewpoint)? } else { from_mesh(args, viewpoint)? };
     if args.json {
@@ -57,6 +59,10 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     Ok(())
 }
 
+fn goes_through_patches(method: Method) -> bool {
+    method != Method::BruteForce
+}
+
 fn viewpoint(args: &ExtractArgs) -> Result<Viewpoint, String> {
     match (args.eye, args.direction) {
         (_, Some(DVec3::ZERO)) => Err("--direction 0,0,0 is no direction".to_owned()),
@@ -70,7 +76,7 @@ fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> 
     let adjacency = source.adjacency();
     let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
     let mut contours = Vec::new();
-    if let Some(Method::Patches | Method::Wgpu) = args.method {
+    if args.method.is_some_and(goes_through_patches) {
         let built = patches::build(&source, &adjacency, filter, &args.fusion)?;
         return from_patches(&built, viewpoint, args.method);
     }
@@ -91,14 +97,12 @@ fn from_patches(
     method: Option<Method>,
 ) -> Result<Found, String> {
     let mut contours = Vec::new();
-    let (method, statistics) = match method {
-        Some(Method::BruteForce) => {
-            ("brute-force", extract_all_wings(patches, viewpoint, &mut contours))
-        }
-        Some(Method::Wgpu) => ("wgpu", gpu::extract(patches, viewpoint, &mut contours)?),
-        Some(Method::Patches) | None => {
-            ("patches", extract_patches(patches, viewpoint, &mut contours))
-        }
+    let (method, statistics) = if let Some(api) = method.and_then(Method::api) {
+        (api.name(), gpu::extract(api, patches, viewpoint, &mut contours)?)
+    } else if method == Some(Method::BruteForce) {
+        ("brute-force", extract_all_wings(patches, viewpoint, &mut contours))
+    } else {
+        ("patches", extract_patches(patches, viewpoint, &mut contours))
     };
     Ok(Found { method, ..with_patches(patches, statistics, &contours) })
 }

@@ -4,10 +4,6 @@ mod args;
 mod draw;
 mod extract;
 mod fusion;
-#[cfg(feature = "wgpu")]
-mod gpu;
-#[cfg(not(feature = "wgpu"))]
-#[path = "without_gpu.rs"]
 mod gpu;
 mod info;
 mod output;

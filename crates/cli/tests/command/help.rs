@@ -12,8 +12,12 @@ fn help_has_examples() {
         ("", &["torus-knot", "cad-part", "huge-sphere"][..]),
         ("patches", &["fast", "default", "best", "paper", "far", "near", "tight", "mesh-shader"]),
         ("patches", &["--levels", "--partition", "super_patches", "peak_memory"]),
-        ("draw", &["--show", "survivors", "--model", "--preset", "--method", "wgpu"]),
-        ("extract", &["super_patches_tested", "--runtime", ".patches"]),
+        ("draw", &["--show", "survivors", "--model", "--preset", "--method", "wgpu", "ash"]),
+        ("draw", &["--method ash", "wgpu or ash", "Vulkan 1.3"]),
+        (
+            "extract",
+            &["super_patches_tested", "--runtime", ".patches", "wgpu", "ash", "Vulkan 1.3"],
+        ),
     ] {
         let help = bench.succeed(&format!("{command} --help"));
         for word in words {

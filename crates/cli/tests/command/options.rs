@@ -53,18 +53,26 @@ fn bad_options_say_what_is_wrong() {
     bench.fail("draw folder", &["folder"]);
     bench.fail("extract corner.obj --eye 1,2,3 --direction 1,2,3", &["--direction"]);
     bench.fail("extract corner.obj --direction 0,0,0", &["--direction"]);
-    bench.fail("extract corner.obj --eye 1,2,3 --method magic", &["magic", "brute-force"]);
+    let words = ["magic", "brute-force", "patches", "wgpu", "ash"];
+    bench.fail("extract corner.obj --eye 1,2,3 --method magic", &words);
     bench.fail("patches corner.obj", &["--output"]);
     bench.fail("patches corner.obj -o nowhere/a.patches", &["nowhere/a.patches"]);
     bench.fail("paint corner.obj", &["paint"]);
 }
 
-#[cfg(not(feature = "wgpu"))]
 #[test]
-fn without_gpu_code_a_gpu_is_refused() {
+fn a_method_that_was_not_built_in_is_refused() {
     let bench = Bench::new();
     bench.write("corner.obj", CORNER);
-    for args in ["draw corner.obj -o a.png", "extract corner.obj --eye 1,2,3"] {
-        bench.fail(&format!("{args} --method wgpu"), &["--method wgpu", "feature wgpu"]);
+    let methods = [("wgpu", cfg!(feature = "wgpu")), ("ash", cfg!(feature = "ash"))];
+    for (method, _) in methods.into_iter().filter(|(_, is_built_in)| !is_built_in) {
+        let words = [&format!("--method {method}")[..], &format!("the feature {method}")];
+        for args in [
+            "draw corner.obj -o a.png",
+            "extract corner.obj --eye 1,2,3",
+            "extract nothing.obj --eye 1,2,3",
+        ] {
+            bench.fail(&format!("{args} --method {method}"), &words);
+        }
     }
 }
