@@ -5,6 +5,7 @@
     reason = "what is left to f32 is to be seen, as `--nocapture` shows it"
 )]
 #![allow(clippy::cast_possible_truncation, reason = "instances and segments are few")]
+#![allow(clippy::duplicate_mod, reason = "supports of either runtime include what both need")]
 
 #[path = "../../crates/ash/tests/support/mod.rs"]
 mod mesh_support;

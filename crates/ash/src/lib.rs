@@ -34,8 +34,8 @@
 //! when a pipeline is made.
 //!
 //! A device of `wgpu` on Vulkan will do, if it was opened with these features (`open_with_callback` of
-//! wgpu-hal's adapter): its handles go to [`Device::from_raw`], and those of one of its command encoders to
-//! [`Commands::from_raw`]. The test `beside_wgpu` shows how.
+//! wgpu-hal's adapter): its handles go to [`Device::from_raw`], and that of one of its command encoders, in
+//! which nothing else is recorded, to [`Commands::from_raw`]. The test `beside_wgpu` shows how.
 //!
 //! ```no_run
 //! use drypoint_ash::{Capacity, Gpu, MeshContours, MeshOptions, MeshPass, Method, Model, Placement};

@@ -6,7 +6,9 @@ use drypoint_tests::report::MeshReport;
 
 use crate::decompositions::Subject;
 use crate::kept::Kept;
-use crate::{Devices, Options, Section, calibrate, contenders, drawing, gpu as on_gpu, vulkan};
+use crate::{
+    Devices, Options, Section, calibrate, contenders, drawing, gpu as on_gpu, vulkan as on_vulkan,
+};
 
 pub(crate) fn mesh(
     name: &str,
@@ -14,7 +16,6 @@ pub(crate) fn mesh(
     options: &Options,
     (kept, devices): (&Kept, &Devices),
 ) -> Result<MeshReport, String> {
-    let gpu = devices.gpu.as_ref();
     let fail = |why: String| format!("{name}: {why}");
     let adjacency = MeshAdjacency::new(mesh);
     let subject = |filter| Subject::new((name, mesh, &adjacency), filter, (options, kept));
@@ -22,7 +23,7 @@ pub(crate) fn mesh(
     let rounds = options.rounds();
     let key = format!("{:016x} {rounds}", mesh_hash(mesh));
     let timed = |section, what: &str| options.wants(section).then(|| format!("{name}, {what}"));
-    Ok(MeshReport {
+    let report = MeshReport {
         name: name.to_owned(),
         faces: mesh.triangles().len(),
         edges: adjacency.edges(EdgeFilter::Convex).count(),
@@ -49,29 +50,38 @@ pub(crate) fn mesh(
             }
             None => Vec::new(),
         },
-        gpu: match gpu.zip(timed(Section::Gpu, "GPU")) {
-            Some((gpu, what)) => {
-                let key = format!("{key} {} {}", options.quick, gpu.name());
-                let measure = || on_gpu::measure(gpu, mesh, &adjacency, options);
-                kept.or_measure(&what, &key, measure).map_err(fail)?
-            }
-            None => None,
-        },
-        gpu_calibration: match gpu.zip(timed(Section::GpuCalibration, "GPU calibration")) {
-            Some((gpu, what)) => {
-                let key = format!("{key} {}", gpu.name());
-                let measure = || on_gpu::calibrate::measure(gpu, mesh, &adjacency, rounds);
-                kept.or_measure(&what, &key, measure).map_err(fail)?
-            }
-            None => Vec::new(),
-        },
-        vulkan: match devices.vulkan.as_ref().zip(timed(Section::Vulkan, "Vulkan")) {
-            Some((gpu, what)) => {
-                let key = format!("{key} {} {}", options.quick, gpu.device().name());
-                let measure = || vulkan::measure(gpu, mesh, &adjacency, options);
-                kept.or_measure(&what, &key, measure).map_err(fail)?
-            }
-            None => Vec::new(),
-        },
-    })
+        gpu: None,
+        gpu_calibration: Vec::new(),
+        vulkan: Vec::new(),
+    };
+    on_gpus(report, (mesh, &adjacency), options, (kept, devices))
+}
+
+/// The same with what is measured on GPUs.
+fn on_gpus(
+    mut report: MeshReport,
+    (mesh, adjacency): (&Mesh, &MeshAdjacency),
+    options: &Options,
+    (kept, Devices { gpu, vulkan }): (&Kept, &Devices),
+) -> Result<MeshReport, String> {
+    let name = &report.name;
+    let fail = |why: String| format!("{name}: {why}");
+    let rounds = options.rounds();
+    let key = format!("{:016x} {rounds}", mesh_hash(mesh));
+    if let Some(gpu) = gpu.as_ref().filter(|_| options.wants(Section::Gpu)) {
+        let key = format!("{key} {} {}", options.quick, gpu.name());
+        let measure = || on_gpu::measure(gpu, mesh, adjacency, options);
+        report.gpu = kept.or_measure(&format!("{name}, GPU"), &key, measure).map_err(fail)?;
+    }
+    if let Some(gpu) = gpu.as_ref().filter(|_| options.wants(Section::GpuCalibration)) {
+        let (key, what) = (format!("{key} {}", gpu.name()), format!("{name}, GPU calibration"));
+        let measure = || on_gpu::calibrate::measure(gpu, mesh, adjacency, rounds);
+        report.gpu_calibration = kept.or_measure(&what, &key, measure).map_err(fail)?;
+    }
+    if let Some(gpu) = vulkan.as_ref().filter(|_| options.wants(Section::Vulkan)) {
+        let key = format!("{key} {} {}", options.quick, gpu.device().name());
+        let measure = || on_vulkan::measure(gpu, mesh, adjacency, options);
+        report.vulkan = kept.or_measure(&format!("{name}, Vulkan"), &key, measure).map_err(fail)?;
+    }
+    Ok(report)
 }
