@@ -9,6 +9,7 @@ use ash::vk;
 use crate::binding::Set;
 use crate::memory::{Buffer, Image};
 use crate::pipeline::Pipeline;
+use crate::queries::{Counting, Pool};
 use crate::{Device, Error};
 
 /// Records into a command buffer, and keeps what is recorded from going before it has executed.
@@ -18,6 +19,8 @@ pub struct Commands {
     raw: vk::CommandBuffer,
     id: u64,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
+    /// What is being counted, and where.
+    counting: Option<(Counting, Vec<Arc<Pool>>)>,
 }
 
 /// What a command buffer uses: to be kept until it has executed, or will not be any more.
@@ -139,11 +142,12 @@ impl Commands {
     pub unsafe fn from_raw(device: &Device, raw: vk::CommandBuffer) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self { device: device.clone(), raw, id, kept: Vec::new() }
+        Self { device: device.clone(), raw, id, kept: Vec::new(), counting: None }
     }
 
     /// Ends recording through this value; the command buffer may be recorded on by other means.
-    pub fn finish(self) -> Recorded {
+    pub fn finish(mut self) -> Recorded {
+        self.end_counting();
         Recorded { id: self.id, _kept: self.kept }
     }
 
@@ -160,6 +164,43 @@ impl Commands {
     /// What tells these commands from others.
     pub(crate) fn id(&self) -> u64 {
         self.id
+    }
+
+    /// Begins the only query of each pool.
+    pub(crate) fn count<'a>(
+        &mut self,
+        counting: Counting,
+        pools: impl Iterator<Item = &'a Arc<Pool>>,
+    ) -> Result<(), Error> {
+        if self.counting.is_some() {
+            return Err(Error::Counting { what: "more queries" });
+        }
+        let pools: Vec<_> = pools.cloned().collect();
+        for pool in &pools {
+            self.keep(pool.clone());
+            let flags = vk::QueryControlFlags::empty();
+            // SAFETY: no rendering is open, and nothing else is counted; the pool is kept, and no commands used it
+            // before, but such as have executed.
+            unsafe {
+                self.device.raw().cmd_reset_query_pool(self.raw, pool.raw(), 0, 1);
+                self.device.raw().cmd_begin_query(self.raw, pool.raw(), 0, flags);
+            }
+        }
+        self.counting = Some((counting, pools));
+        Ok(())
+    }
+
+    /// Ends what was begun, if anything was.
+    pub(crate) fn end_counting(&mut self) {
+        for pool in self.counting.take().into_iter().flat_map(|(_, pools)| pools) {
+            // SAFETY: it was begun in these commands, and not ended.
+            unsafe { self.device.raw().cmd_end_query(self.raw, pool.raw(), 0) };
+        }
+    }
+
+    /// What is being counted.
+    pub(crate) fn counting(&self) -> Option<Counting> {
+        self.counting.as_ref().map(|(counting, _)| *counting)
     }
 
     pub(crate) fn check(&self, device: &Device, what: &'static str) -> Result<(), Error> {

@@ -89,6 +89,12 @@ pub enum Error {
     /// Contours were made for mesh shaders with workgroups of other sizes.
     #[error("the contours were made for another pass of mesh shaders")]
     OtherPass,
+    /// Queries are under way that do not go with it: see [`Counting`](crate::Counting).
+    #[error("{what} cannot be recorded while other shaders are counted")]
+    Counting {
+        /// What.
+        what: &'static str,
+    },
     /// A surface is made from the meshes that the model's parts were made from.
     #[error("the meshes of the surface are not those that the model was made from")]
     OtherMeshes,

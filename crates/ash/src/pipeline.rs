@@ -22,6 +22,8 @@ struct SharedPipeline {
     layout: vk::PipelineLayout,
     point: vk::PipelineBindPoint,
     formats: Formats,
+    /// Whether it has a mesh shader.
+    is_mesh: bool,
     _layouts: Vec<Layout>,
 }
 
@@ -73,7 +75,7 @@ impl Pipeline {
         let made = unsafe {
             device.raw().create_compute_pipelines(vk::PipelineCache::null(), &[info], None)
         };
-        layout.complete(made, vk::PipelineBindPoint::COMPUTE, Formats::default())
+        layout.complete(made, vk::PipelineBindPoint::COMPUTE, (Formats::default(), false))
     }
 
     pub(crate) fn raw(&self) -> vk::Pipeline {
@@ -86,6 +88,10 @@ impl Pipeline {
 
     pub(crate) fn point(&self) -> vk::PipelineBindPoint {
         self.shared.point
+    }
+
+    pub(crate) fn is_mesh(&self) -> bool {
+        self.shared.is_mesh
     }
 
     pub(crate) fn formats(&self) -> Formats {
@@ -152,7 +158,8 @@ impl Drawing<'_> {
         let made = unsafe {
             device.raw().create_graphics_pipelines(vk::PipelineCache::null(), &[info], None)
         };
-        layout.complete(made, vk::PipelineBindPoint::GRAPHICS, self.formats)
+        let is_mesh = has(vk::ShaderStageFlags::MESH_EXT);
+        layout.complete(made, vk::PipelineBindPoint::GRAPHICS, (self.formats, is_mesh))
     }
 }
 
@@ -210,7 +217,7 @@ impl<'a> PipelineLayout<'a> {
         self,
         made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
         point: vk::PipelineBindPoint,
-        formats: Formats,
+        (formats, is_mesh): (Formats, bool),
     ) -> Result<Pipeline, Error> {
         let raw = made.map(|pipelines| pipelines[0]).map_err(|(_, error)| {
             // SAFETY: nobody else has seen the layout.
@@ -219,7 +226,8 @@ impl<'a> PipelineLayout<'a> {
         })?;
         let device = self.device.clone();
         let (layout, layouts) = (self.raw, self.layouts);
-        let shared = SharedPipeline { device, raw, layout, point, formats, _layouts: layouts };
+        let shared =
+            SharedPipeline { device, raw, layout, point, formats, is_mesh, _layouts: layouts };
         Ok(Pipeline { shared: Arc::new(shared) })
     }
 }

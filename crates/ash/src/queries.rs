@@ -10,11 +10,11 @@ use crate::{Device, Error};
 /// What [`Queries`] count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Counting {
-    /// Invocations of task and mesh shaders, and primitives that mesh shaders emit. Draws of vertex shaders must
-    /// not come in between.
+    /// Invocations of task and mesh shaders, and primitives that mesh shaders emit. Draws of vertex shaders are
+    /// refused meanwhile.
     MeshShaders,
     /// Invocations of compute and vertex shaders, and primitives that are assembled from vertices. Draws of mesh
-    /// shaders must not come in between.
+    /// shaders are refused meanwhile.
     Compute,
 }
 
@@ -30,6 +30,8 @@ pub struct Queries {
     timer: Option<Timer>,
     /// Of the commands that they are in.
     id: Option<u64>,
+    /// Begun, and not ended yet.
+    is_running: bool,
 }
 
 /// How long the device takes from a beginning to an end in one command buffer, whatever is drawn in between.
@@ -60,8 +62,9 @@ pub struct Counts {
     pub seconds: Option<f64>,
 }
 
+/// Queries of one kind.
 #[derive(Debug)]
-struct Pool {
+pub(crate) struct Pool {
     device: Device,
     raw: vk::QueryPool,
 }
@@ -77,7 +80,7 @@ const OF_COMPUTE: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFl
 );
 
 impl Queries {
-    /// For one use at a time.
+    /// To be used any number of times.
     ///
     /// # Errors
     /// [`Error::MissingFeature`] if the device was made without
@@ -108,47 +111,38 @@ impl Queries {
             timer => Some(timer?),
         };
         let device = device.clone();
-        Ok(Self { device, counting, invocations, primitives, timer, id: None })
+        Ok(Self { device, counting, invocations, primitives, timer, id: None, is_running: false })
     }
 
-    /// Begins to count. Outside of rendering.
+    /// Begins to count. Outside of rendering. New queries are made where earlier ones are still under way.
     ///
     /// # Errors
-    /// If the commands are of another device.
+    /// If the commands are of another device, or something is counted in them already, or there is not enough memory.
     pub fn begin(&mut self, commands: &mut Commands) -> Result<(), Error> {
         commands.check(&self.device, "queries")?;
-        self.id = Some(commands.id());
-        let (device, raw) = (commands.device().clone(), commands.raw());
-        let pools = [Some(&self.invocations), self.primitives.as_ref()];
-        for pool in pools.into_iter().flatten() {
-            commands.keep(pool.clone());
-            // SAFETY: no rendering is open, and the pool is kept; its only query is not in use, as the caller
-            // waits for one use before the next.
-            unsafe {
-                device.raw().cmd_reset_query_pool(raw, pool.raw, 0, 1);
-                device.raw().cmd_begin_query(raw, pool.raw, 0, vk::QueryControlFlags::empty());
-            }
+        if Arc::strong_count(&self.invocations) > 1 {
+            let fresh = Self::new(&self.device, self.counting)?;
+            (self.invocations, self.primitives) = (fresh.invocations, fresh.primitives);
         }
+        let pools = [Some(&self.invocations), self.primitives.as_ref()];
+        commands.count(self.counting, pools.into_iter().flatten())?;
+        (self.id, self.is_running) = (Some(commands.id()), true);
         self.timer.as_mut().map_or(Ok(()), |timer| timer.begin(commands))
     }
 
     /// Ends, in the same commands. Outside of rendering.
     ///
     /// # Errors
-    /// [`Error::OtherCommands`] if it was begun elsewhere.
+    /// [`Error::OtherCommands`] if it was not begun in them.
     pub fn end(&mut self, commands: &mut Commands) -> Result<(), Error> {
-        if self.id != Some(commands.id()) {
+        if self.id != Some(commands.id()) || !self.is_running {
             return Err(Error::OtherCommands { what: "queries" });
         }
+        self.is_running = false;
         if let Some(timer) = &mut self.timer {
             timer.end(commands)?;
         }
-        let raw = commands.raw();
-        let pools = [Some(&self.invocations), self.primitives.as_ref()];
-        for pool in pools.into_iter().flatten() {
-            // SAFETY: it was begun in these commands.
-            unsafe { self.device.raw().cmd_end_query(raw, pool.raw, 0) };
-        }
+        commands.end_counting();
         Ok(())
     }
 
@@ -158,7 +152,7 @@ impl Queries {
     /// [`Error::OtherCommands`] if it was recorded into other commands than those that have executed, or if the
     /// device is lost.
     pub fn read(&self, executed: &Executed) -> Result<Counts, Error> {
-        if !executed.is_of(self.id) {
+        if !executed.is_of(self.id) || self.is_running {
             return Err(Error::OtherCommands { what: "queries" });
         }
         let mut counts = Counts::default();
@@ -182,7 +176,7 @@ impl Queries {
 }
 
 impl Timer {
-    /// For one use at a time.
+    /// To be used any number of times.
     ///
     /// # Errors
     /// [`Error::MissingFeature`] if the device has no clock.
@@ -196,17 +190,21 @@ impl Timer {
         Ok(Self { device: device.clone(), pool, id: None, is_running: false })
     }
 
-    /// Begins, when all that was recorded before is done. Outside of rendering.
+    /// Begins, when all that was recorded before is done. Outside of rendering. New queries are made where earlier
+    /// ones are still under way.
     ///
     /// # Errors
     /// If the commands are of another device.
     pub fn begin(&mut self, commands: &mut Commands) -> Result<(), Error> {
         commands.check(&self.device, "a timer")?;
+        if Arc::strong_count(&self.pool) > 1 {
+            self.pool = Self::new(&self.device)?.pool;
+        }
         (self.id, self.is_running) = (Some(commands.id()), true);
         commands.keep(self.pool.clone());
         let raw = commands.raw();
-        // SAFETY: no rendering is open, and the pool is kept; its two queries are not in use, as the caller waits
-        // for one use before the next.
+        // SAFETY: no rendering is open, and the pool is kept; no commands used its two queries before, but such as
+        // have executed.
         unsafe { self.device.raw().cmd_reset_query_pool(raw, self.pool.raw, 0, 2) };
         self.write(raw, 0);
         Ok(())
@@ -260,6 +258,10 @@ impl Pool {
         let raw = unsafe { device.raw().create_query_pool(&info, None) };
         let raw = raw.map_err(|error| Error::of("queries", error))?;
         Ok(Arc::new(Self { device: device.clone(), raw }))
+    }
+
+    pub(crate) fn raw(&self) -> vk::QueryPool {
+        self.raw
     }
 
     fn read<const N: usize>(&self) -> Result<[u64; N], Error> {

@@ -7,6 +7,7 @@ use crate::binding::Set;
 use crate::commands::Commands;
 use crate::memory::{Buffer, Image};
 use crate::pipeline::{Formats, Pipeline};
+use crate::queries::Counting;
 use crate::{Device, Error};
 
 /// Commands while images are drawn to.
@@ -135,6 +136,10 @@ impl Rendering<'_> {
                 self.formats
             );
             return Err(Error::Refused { what, reason });
+        }
+        let other = if pipeline.is_mesh() { Counting::Compute } else { Counting::MeshShaders };
+        if self.commands.counting() == Some(other) {
+            return Err(Error::Counting { what });
         }
         self.commands.bind(pipeline, sets);
         Ok(())

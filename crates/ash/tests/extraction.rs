@@ -388,3 +388,53 @@ fn what_commands_use_stays_until_they_have_executed() {
     Expected::new(&set, all).compare(&segments, "after all is gone");
     support::expect_silence();
 }
+
+#[test]
+fn queries_are_refused_where_they_do_not_fit_and_new_where_they_are_under_way() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let set = patches(&shapes::icosphere(500), Levels::One);
+    let all = &placements(&shapes::icosphere(500))[..2];
+    let pass = MeshPass::new(gpu.device(), &MeshOptions::default()).expect("shaders compile");
+    let mut mesh = Queries::new(gpu.device(), Counting::MeshShaders).expect("it can count");
+    let mut compute = Queries::new(gpu.device(), Counting::Compute).expect("it can count");
+    let refused = gpu.run(|commands| {
+        mesh.begin(commands)?;
+        compute.begin(commands)
+    });
+    assert_eq!(refused.err(), Some(Error::Counting { what: "more queries" }));
+    // What is under way when recording ends, ends there: it is not read, and hangs nobody.
+    let ((), executed) = gpu.run(|commands| mesh.begin(commands)).expect("it is recorded");
+    let unread = mesh.read(&executed);
+    assert_eq!(unread.err(), Some(Error::OtherCommands { what: "queries" }));
+    let refused = gpu.run(|commands| {
+        let model = Model::new(commands, &[&set])?;
+        let capacity = Capacity { placements: 2, segments: 1_000 };
+        let mut contours = MeshContours::new(&pass, &model, capacity)?;
+        contours.prepare(&pass, commands, all, Method::Patches)?;
+        compute.begin(commands)?;
+        pass.extract(commands, &contours)
+    });
+    assert!(matches!(refused.err(), Some(Error::Counting { .. })));
+    // Twice in the same commands: the second time with new ones.
+    let counts = gpu.run(|commands| {
+        let model = Model::new(commands, &[&set])?;
+        let capacity = Capacity { placements: 2, segments: 1_000 };
+        let mut contours = MeshContours::new(&pass, &model, capacity)?;
+        for few in [1, 2] {
+            contours.prepare(&pass, commands, &all[..few], Method::BruteForce)?;
+            mesh.begin(commands)?;
+            pass.extract(commands, &contours)?;
+            mesh.end(commands)?;
+        }
+        Ok(())
+    });
+    let ((), executed) = counts.expect("it is drawn");
+    let edges = 2 * set.wings().len() as u64;
+    let lanes = u64::from(pass.edges_per_workgroup());
+    let counts = mesh.read(&executed).expect("it was counted");
+    assert_eq!(counts.mesh_invocations, edges.next_multiple_of(lanes));
+    support::expect_silence();
+}
