@@ -159,7 +159,7 @@ impl<'a> Subject<'a> {
             let placements: Vec<_> = views.iter().map(|view| view.placement).collect();
             for &method in methods {
                 let extracted = gpu.run(|commands| {
-                    contours.prepare(pass, commands, &placements, method)?;
+                    contours.prepare(commands, &placements, method)?;
                     queries.begin(commands)?;
                     pass.extract(commands, &contours)?;
                     queries.end(commands)?;

@@ -4,10 +4,10 @@ use ash::vk;
 use drypoint_shaders::{Arguments, DepthOrder, INK, LINES, Raster, View};
 use glam::Vec2;
 
-use crate::binding::{Resource, Set};
-use crate::commands::{Commands, Use};
+use crate::binding::{Layout, Resource, Set};
+use crate::commands::{Commands, Fate, Use};
 use crate::depth_pass::{DepthPass, Found, Surface};
-use crate::look::{Look, uniform};
+use crate::look::Look;
 use crate::memory::Image;
 use crate::mesh_pass::MeshPass;
 use crate::pipeline::{Blending, Drawing, Formats, Pipeline};
@@ -22,18 +22,28 @@ use crate::{Device, Error, layouts};
 /// shaders or from mesh shaders, they are the same.
 #[derive(Debug)]
 pub struct Canvas {
-    size: [u32; 2],
     order: DepthOrder,
-    depth: Image,
-    coverage: Image,
     depth_pass: DepthPass,
     mesh_pass: MeshPass,
     covering: Pipeline,
     inking: Pipeline,
     look: Look,
-    /// What strokes of vertex shaders bind beside the look, what those of mesh shaders bind with it, and what
-    /// inking binds.
-    sets: [Set; 3],
+    images: Images,
+}
+
+/// What is as large as the picture.
+#[derive(Debug)]
+struct Images {
+    size: [u32; 2],
+    depth: Image,
+    coverage: Image,
+    /// What strokes of vertex shaders bind beside the look.
+    target: Set,
+    /// What strokes of mesh shaders bind with it.
+    style: Set,
+    /// What inking binds.
+    covered: Set,
+    fate: Fate,
 }
 
 /// What is drawn of one model: its contours, and the triangles that hide lines.
@@ -60,42 +70,26 @@ impl Canvas {
         format: vk::Format,
     ) -> Result<Self, Error> {
         let device = &commands.device().clone();
-        check_size(device, size)?;
-        let usage = vk::ImageUsageFlags::SAMPLED;
-        let attached = usage | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let depth = Image::new(device, "depths", size, (DEPTH, attached))?;
-        let attached = usage | vk::ImageUsageFlags::COLOR_ATTACHMENT;
-        let coverage = Image::new(device, "the coverage of lines", size, (COVERAGE, attached))?;
-        let raster = uniform(device, "a line target", size_of::<Raster>())?;
-        #[expect(clippy::cast_precision_loss, reason = "sides of images are exact in f32")]
-        let pixels = Vec2::new(size[0] as f32, size[1] as f32);
-        let target = Raster { size: pixels, depth_sign: order.sign(), depth_step: 0.0 };
-        commands.update(&raster, bytemuck::bytes_of(&target));
-        commands.barrier(Use::COPIED_TO, Use::READ_BY_DRAWING);
-        let stroke = layouts::stroke(device)?;
-        let look = Look::new(device, &stroke)?;
-        let target_layout = layouts::line_target(device)?;
-        let mesh_style = layouts::mesh_strokes(device)?;
-        let coverage_layout = layouts::coverage(device)?;
-        let target = [Resource::Buffer(&raster), Resource::Image(&depth)];
-        let style = [Resource::Buffer(look.buffer()), target[0], target[1]];
-        let sets = [
-            Set::new(&target_layout, "the bindings of a line target", &target)?,
-            Set::new(&mesh_style, "the bindings of strokes", &style)?,
-            Set::new(&coverage_layout, "the bindings of coverage", &[Resource::Image(&coverage)])?,
-        ];
+        let look = Look::new(device, &layouts::stroke(device)?)?;
         Ok(Self {
-            size,
             order,
             depth_pass: DepthPass::new(device, DEPTH, order)?,
-            mesh_pass: MeshPass::strokes(device, &mesh_style, COVERAGE)?,
+            mesh_pass: MeshPass::strokes(device, &layouts::mesh_strokes(device)?, COVERAGE)?,
             covering: covering(device)?,
             inking: inking(device, format)?,
-            depth,
-            coverage,
+            images: Images::new(commands, size, (order, &look))?,
             look,
-            sets,
         })
+    }
+
+    /// Another width and height, in pixels.
+    ///
+    /// # Errors
+    /// As [`Canvas::new`]; then it stays as it was.
+    pub fn resize(&mut self, commands: &mut Commands, size: [u32; 2]) -> Result<(), Error> {
+        commands.check(self.mesh_pass.device(), "the canvas")?;
+        self.images = Images::new(commands, size, (self.order, &self.look))?;
+        Ok(())
     }
 
     /// To make [`MeshContours`](crate::MeshContours) with that are drawn here.
@@ -103,7 +97,8 @@ impl Canvas {
         &self.mesh_pass
     }
 
-    /// Draws depths and strokes of `subjects` in place of what was there. Outside of rendering.
+    /// Draws depths and strokes of `subjects` in place of what was there. Outside of rendering. The background of
+    /// `view` is for whoever renders.
     ///
     /// # Errors
     /// If something is of another device.
@@ -114,30 +109,33 @@ impl Canvas {
         subjects: &[Subject<'_>],
     ) -> Result<(), Error> {
         commands.check(self.mesh_pass.device(), "the canvas")?;
+        let Images { size, depth, coverage, fate, .. } = &self.images;
+        fate.check("the canvas")?;
         self.depth_pass.prepare(commands, view.scene_to_clip);
         self.look.record(commands, view.scene_to_clip, &view.lines);
         let undefined = vk::ImageLayout::UNDEFINED;
         let to_test = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
         let to_draw = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
         let to_read = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-        commands.transition(&self.depth, (Use::SAMPLED, undefined), (Use::DEPTH_TESTED, to_test));
-        let depth = Some((&self.depth, DEPTH, self.order));
+        commands.transition(depth, (Use::SAMPLED, undefined), (Use::DEPTH_TESTED, to_test));
+        let tested = Some((depth, DEPTH, self.order));
         {
-            let mut rendering = commands.render(&Targets { color: None, depth, size: self.size });
+            let mut rendering =
+                commands.render(&Targets { color: None, depth: tested, size: *size });
             for Subject { contours, surface } in subjects {
                 self.depth_pass.record(&mut rendering, surface, *contours)?;
             }
         }
-        commands.transition(&self.depth, (Use::DEPTH_TESTED, to_test), (Use::SAMPLED, to_read));
-        commands.transition(&self.coverage, (Use::SAMPLED, undefined), (Use::DRAWN_TO, to_draw));
-        let color = Some((&self.coverage, COVERAGE, [0.0; 4]));
+        commands.transition(depth, (Use::DEPTH_TESTED, to_test), (Use::SAMPLED, to_read));
+        commands.transition(coverage, (Use::SAMPLED, undefined), (Use::DRAWN_TO, to_draw));
+        let color = Some((coverage, COVERAGE, [0.0; 4]));
         {
-            let mut rendering = commands.render(&Targets { color, depth: None, size: self.size });
+            let mut rendering = commands.render(&Targets { color, depth: None, size: *size });
             for Subject { contours, .. } in subjects {
                 self.draw_strokes(&mut rendering, *contours)?;
             }
         }
-        commands.transition(&self.coverage, (Use::DRAWN_TO, to_draw), (Use::SAMPLED, to_read));
+        commands.transition(coverage, (Use::DRAWN_TO, to_draw), (Use::SAMPLED, to_read));
         Ok(())
     }
 
@@ -146,10 +144,11 @@ impl Canvas {
         rendering: &mut Rendering<'_>,
         contours: Found<'_>,
     ) -> Result<(), Error> {
-        let [target, mesh_style, _] = &self.sets;
+        let Images { target, style, .. } = &self.images;
         match contours {
-            Found::Mesh(contours) => self.mesh_pass.record_with(rendering, contours, mesh_style),
+            Found::Mesh(contours) => self.mesh_pass.record_with(rendering, contours, style),
             Found::Compute(contours) => {
+                contours.input.check(rendering.commands())?;
                 let sets: [(&Set, &[u32]); 3] =
                     [(self.look.set(), &[]), (target, &[]), (&contours.segment_set, &[])];
                 rendering.bind(&self.covering, "strokes", &sets)?;
@@ -166,10 +165,52 @@ impl Canvas {
     /// If rendering is to something else, or of another device.
     pub fn ink(&self, rendering: &mut Rendering<'_>) -> Result<(), Error> {
         rendering.check(self.mesh_pass.device(), "the canvas")?;
-        let sets: [(&Set, &[u32]); 2] = [(self.look.set(), &[]), (&self.sets[2], &[])];
+        self.images.fate.check("the canvas")?;
+        let sets: [(&Set, &[u32]); 2] = [(self.look.set(), &[]), (&self.images.covered, &[])];
         rendering.bind(&self.inking, "ink", &sets)?;
         rendering.draw(3);
         Ok(())
+    }
+}
+
+impl Images {
+    fn new(
+        commands: &mut Commands,
+        size: [u32; 2],
+        (order, look): (DepthOrder, &Look),
+    ) -> Result<Self, Error> {
+        let device = &commands.device().clone();
+        check_size(device, size)?;
+        let usage = vk::ImageUsageFlags::SAMPLED;
+        let attached = usage | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let depth = Image::new(device, "depths", size, (DEPTH, attached))?;
+        let attached = usage | vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        let coverage = Image::new(device, "the coverage of lines", size, (COVERAGE, attached))?;
+        for image in [&depth, &coverage] {
+            let undefined = (Use::ANYTHING, vk::ImageLayout::UNDEFINED);
+            let to_read = (Use::SAMPLED, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
+            commands.transition(image, undefined, to_read);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "sides of images are exact in f32")]
+        let pixels = Vec2::new(size[0] as f32, size[1] as f32);
+        let raster = Raster { size: pixels, depth_sign: order.sign(), depth_step: 0.0 };
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let raster = commands.upload("a line target", bytemuck::bytes_of(&raster), usage)?;
+        commands.barrier(Use::COPIED_TO, Use::READ_BY_DRAWING);
+        let target = [Resource::Buffer(&raster), Resource::Image(&depth)];
+        let style = [Resource::Buffer(look.buffer()), target[0], target[1]];
+        let covered = [Resource::Image(&coverage)];
+        let set =
+            |layout: Layout, what, resources: &[Resource<'_>]| Set::new(&layout, what, resources);
+        Ok(Self {
+            size,
+            target: set(layouts::line_target(device)?, "the bindings of a line target", &target)?,
+            style: set(layouts::mesh_strokes(device)?, "the bindings of strokes", &style)?,
+            covered: set(layouts::coverage(device)?, "the bindings of coverage", &covered)?,
+            depth,
+            coverage,
+            fate: commands.fate().clone(),
+        })
     }
 }
 

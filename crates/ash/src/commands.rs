@@ -2,7 +2,7 @@
 
 use std::any::Any;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use ash::vk;
 
@@ -21,6 +21,29 @@ pub struct Commands {
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// What is being counted, and where.
     counting: Option<(Counting, Vec<Arc<Pool>>)>,
+    fate: Fate,
+}
+
+/// Whether commands came to nothing: what they were to write holds anything then.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fate {
+    is_abandoned: Arc<AtomicBool>,
+}
+
+impl Fate {
+    /// The commands will never execute.
+    pub(crate) fn abandon(&self) {
+        self.is_abandoned.store(true, Ordering::Release);
+    }
+
+    /// Fails if it is so, for what was made in them.
+    pub(crate) fn check(&self, what: &'static str) -> Result<(), Error> {
+        if self.is_abandoned.load(Ordering::Acquire) {
+            Err(Error::Abandoned { what })
+        } else {
+            Ok(())
+        }
+    }
 }
 
 /// What a command buffer uses: to be kept until it has executed, or will not be any more.
@@ -137,12 +160,20 @@ impl Commands {
     /// `raw` is of `device` and of a queue family with graphics and compute; it is being recorded, by this thread
     /// alone, and is no secondary one. What is recorded by other means meanwhile leaves no rendering open at
     /// calls on this value. It executes no more than once for each recording, after all that was recorded before
-    /// it, on one queue or with semaphores between. [`Commands::finish`] is called, and what it gives is kept
-    /// until the command buffer has executed, or will not be any more.
+    /// it, on one queue or with semaphores between; if it never does, what was made and prepared in it is not used
+    /// any more. [`Commands::finish`] is called, after an error too, and what it gives is kept until the command
+    /// buffer has executed, or will not be any more.
     pub unsafe fn from_raw(device: &Device, raw: vk::CommandBuffer) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self { device: device.clone(), raw, id, kept: Vec::new(), counting: None }
+        Self {
+            device: device.clone(),
+            raw,
+            id,
+            kept: Vec::new(),
+            counting: None,
+            fate: Fate::default(),
+        }
     }
 
     /// Ends recording through this value; the command buffer may be recorded on by other means.
@@ -159,6 +190,11 @@ impl Commands {
     /// The command buffer.
     pub fn raw(&self) -> vk::CommandBuffer {
         self.raw
+    }
+
+    /// What becomes of them.
+    pub(crate) fn fate(&self) -> &Fate {
+        &self.fate
     }
 
     /// What tells these commands from others.

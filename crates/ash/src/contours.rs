@@ -2,7 +2,8 @@
 
 use ash::vk::BufferUsageFlags as Usage;
 use drypoint_shaders::{
-    Arguments, Counters, Dispatch, Method, Placement, Plan, Segment, Statistics, Totals, Work,
+    Arguments, Counters, Dispatch, Method, Placement, Plan, PlanLimits, Segment, Statistics,
+    Totals, Work,
 };
 
 use crate::binding::{Resource, Set};
@@ -11,7 +12,7 @@ use crate::extractor::Extractor;
 use crate::input::Input;
 use crate::memory::Buffer;
 use crate::model::Model;
-use crate::{Device, Error, layouts};
+use crate::{Error, layouts};
 
 /// What there is room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +28,7 @@ pub struct Capacity {
 pub struct Contours {
     model: Model,
     capacity: Capacity,
+    limits: PlanLimits,
     pub(crate) input: Input,
     counters: Buffer,
     totals: Buffer,
@@ -46,13 +48,14 @@ impl Contours {
     /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer.
     pub fn new(extractor: &Extractor, model: &Model, capacity: Capacity) -> Result<Self, Error> {
         let device = extractor.device();
-        check(device, model)?;
+        model.check(device)?;
         let make = |what, size: usize, usage| {
             let usage = usage | Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
             Buffer::new(device, what, size as u64, usage)
         };
+        let limits = extractor.limits();
         let instances = capacity.placements / model.part_count().max(1);
-        let plan = |method| plan(extractor, model, method, (instances, capacity));
+        let plan = |method| plan(limits, model, method, (instances, capacity));
         let methods = [Method::BruteForce, Method::Patches];
         let most = methods.map(|method| plan(method).most_dispatches()).into_iter().max();
         let input = Input::new(device, capacity.placements, most.unwrap_or(0))?;
@@ -75,6 +78,7 @@ impl Contours {
         Ok(Self {
             model: model.clone(),
             capacity,
+            limits,
             input,
             counters,
             totals,
@@ -88,7 +92,7 @@ impl Contours {
     }
 
     /// Records what the next [`Extractor::record`] is to find: part p of instance i is at
-    /// `i * part_count + p` of `placements`. Outside of rendering.
+    /// `i * part_count + p` of `placements`. In the same commands, and outside of rendering.
     ///
     /// # Errors
     /// If there are more placements than there is room for or not one for each part, if one has no inverse, or
@@ -96,16 +100,15 @@ impl Contours {
     /// it succeeds again.
     pub fn prepare(
         &mut self,
-        extractor: &Extractor,
         commands: &mut Commands,
         placements: &[Placement],
         method: Method,
     ) -> Result<(), Error> {
-        commands.check(self.model.device(), "contours")?;
+        self.model.check(commands.device())?;
         self.dispatches.clear();
         self.input.place(&self.model, placements, method)?;
         let instances = self.input.count() / self.model.part_count();
-        plan(extractor, &self.model, method, (instances, self.capacity))
+        plan(self.limits, &self.model, method, (instances, self.capacity))
             .dispatches(&mut |dispatch| self.dispatches.push(dispatch));
         self.input.record(commands, self.dispatches.iter().map(|dispatch| &dispatch.work));
         for counted in [&self.counters, &self.totals, &self.arguments] {
@@ -152,12 +155,8 @@ impl Contours {
     }
 }
 
-pub(crate) fn check(device: &Device, model: &Model) -> Result<(), Error> {
-    if model.device().is(device) { Ok(()) } else { Err(Error::OtherDevice { what: "the model" }) }
-}
-
 fn plan<'a>(
-    extractor: &Extractor,
+    limits: PlanLimits,
     model: &'a Model,
     method: Method,
     (instances, capacity): (u32, Capacity),
@@ -168,7 +167,7 @@ fn plan<'a>(
         method,
         instances,
         segment_capacity: capacity.segments,
-        limits: extractor.limits(),
+        limits,
     }
 }
 

@@ -9,7 +9,7 @@ use drypoint_shaders::{DEPTH, DepthOrder, Part};
 use glam::Mat4;
 
 use crate::binding::{Resource, Set};
-use crate::commands::{Commands, Use};
+use crate::commands::{Commands, Fate, Use};
 use crate::contours::Contours;
 use crate::input::Input;
 use crate::look::{compare, uniform};
@@ -33,6 +33,9 @@ pub(crate) struct DepthPass {
 #[derive(Debug)]
 pub struct Surface {
     model: Model,
+    /// Of the contours that it was made for.
+    transforms: Buffer,
+    fate: Fate,
     indices: Buffer,
     set: Set,
     /// Where each part's uniform lies, and its indices.
@@ -78,6 +81,11 @@ impl DepthPass {
         surface: &Surface,
         found: Found<'_>,
     ) -> Result<(), Error> {
+        surface.fate.check("the surface")?;
+        found.input().check(rendering.commands())?;
+        if surface.transforms.raw() != found.input().transforms.raw() {
+            return Err(Error::OtherContours);
+        }
         let instances = found.input().count() / surface.model.part_count();
         for (offset, indices) in &surface.parts {
             let offset = [*offset];
@@ -130,7 +138,8 @@ impl Surface {
         let resources = [part, Resource::Buffer(&found.input().transforms)];
         let layout = layouts::surface(model.device())?;
         let set = Set::new(&layout, "the bindings of a surface", &resources)?;
-        Ok(Self { model: model.clone(), indices, set, parts })
+        let (model, transforms) = (model.clone(), found.input().transforms.clone());
+        Ok(Self { model, transforms, fate: commands.fate().clone(), indices, set, parts })
     }
 }
 

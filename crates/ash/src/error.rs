@@ -89,6 +89,18 @@ pub enum Error {
     /// Contours were made for mesh shaders with workgroups of other sizes.
     #[error("the contours were made for another pass of mesh shaders")]
     OtherPass,
+    /// It was made in commands that were never executed.
+    #[error("{what} was made in commands that were never executed")]
+    Abandoned {
+        /// What.
+        what: &'static str,
+    },
+    /// Contours are found and drawn in the commands that they were prepared in.
+    #[error("the contours were not prepared in these commands")]
+    Unprepared,
+    /// A surface goes with the contours that it was made for.
+    #[error("the surface was made for other contours")]
+    OtherContours,
     /// Queries are under way that do not go with it: see [`Counting`](crate::Counting).
     #[error("{what} cannot be recorded while other shaders are counted")]
     Counting {

@@ -68,6 +68,7 @@ impl Extractor {
     /// If the commands are of another device.
     pub fn record(&self, commands: &mut Commands, contours: &Contours) -> Result<(), Error> {
         commands.check(&self.device, "the extractor")?;
+        contours.input.check(commands)?;
         for (index, dispatch) in contours.dispatches.iter().enumerate() {
             let pipeline = match dispatch.stage {
                 Stage::Edges => &self.brute_force,

@@ -33,8 +33,10 @@ pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 pub struct GpuOptions {
     /// Asks for the validation layers, core and synchronisation, which tell here what is wrong.
     pub listener: Option<Listener>,
-    /// Enabled besides, as for a window: instance extensions and device extensions.
-    pub extensions: [Vec<&'static CStr>; 2],
+    /// Extensions of the instance that are enabled besides, as for a window.
+    pub instance_extensions: Vec<&'static CStr>,
+    /// Extensions of the device that are enabled besides.
+    pub device_extensions: Vec<&'static CStr>,
     /// Lowers what work is cut to, as to try how it is split.
     pub lower: Option<fn(&mut Limits)>,
 }
@@ -42,11 +44,11 @@ pub struct GpuOptions {
 impl std::fmt::Debug for GpuOptions {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let is_validated = self.listener.is_some();
-        let extensions = &self.extensions;
+        let extensions = [&self.instance_extensions, &self.device_extensions];
         formatter
             .debug_struct("GpuOptions")
             .field("is_validated", &is_validated)
-            .field("extensions", extensions)
+            .field("extensions", &extensions)
             .finish_non_exhaustive()
     }
 }
@@ -96,7 +98,8 @@ impl Gpu {
         let instance = Instance::new(options)?;
         let (physical, family) = instance.choose()?;
         let features = instance.optional_features(physical);
-        let raw = instance.create_device((physical, family), features, &options.extensions[1])?;
+        let raw =
+            instance.create_device((physical, family), features, &options.device_extensions)?;
         let owner = Owner { instance, device: raw.clone() };
         let (entry, functions) = (owner.instance.entry.clone(), owner.instance.raw.clone());
         // SAFETY: it was made right now, with all that is required, and goes with its owner.
@@ -180,8 +183,12 @@ impl Gpu {
         let mut commands = unsafe { Commands::from_raw(&self.device, buffers[0]) };
         let made =
             begun.map_err(|error| Error::of(what, error)).and_then(|()| record(&mut commands));
+        let fate = commands.fate().clone();
         let recorded = commands.finish();
         let made = made.and_then(|made| self.execute(buffers[0]).map(|()| made));
+        if made.is_err() {
+            fate.abandon();
+        }
         // SAFETY: it has executed, or was never submitted, or the device is lost.
         unsafe { raw.free_command_buffers(*pool, &buffers) };
         let made = made?;
@@ -219,7 +226,7 @@ impl Instance {
             .application_name(c"drypoint")
             .api_version(vk::API_VERSION_1_3);
         let mut extensions: Vec<_> =
-            options.extensions[0].iter().map(|name| name.as_ptr()).collect();
+            options.instance_extensions.iter().map(|name| name.as_ptr()).collect();
         let mut layers = Vec::new();
         if options.listener.is_some() {
             // SAFETY: the loader is there.

@@ -22,6 +22,8 @@ pub(crate) struct Input {
     /// As it is being written.
     placed: (Vec<Vec4>, Vec<Transform>),
     bytes: Vec<u8>,
+    /// The commands that it is recorded in, if it is.
+    id: Option<u64>,
 }
 
 impl Input {
@@ -49,6 +51,7 @@ impl Input {
             capacity: placements,
             placed: (Vec::new(), Vec::new()),
             bytes: Vec::new(),
+            id: None,
         })
     }
 
@@ -59,6 +62,7 @@ impl Input {
         placements: &[Placement],
         method: Method,
     ) -> Result<(), Error> {
+        self.id = None;
         let (viewpoints, transforms) = &mut self.placed;
         viewpoints.clear();
         transforms.clear();
@@ -96,6 +100,12 @@ impl Input {
         commands.update(&self.viewpoints, bytemuck::cast_slice(&self.placed.0));
         commands.update(&self.transforms, bytemuck::cast_slice(&self.placed.1));
         commands.update(&self.work, &self.bytes);
+        self.id = Some(commands.id());
+    }
+
+    /// Fails if it is not recorded in these commands.
+    pub(crate) fn check(&self, commands: &Commands) -> Result<(), Error> {
+        if self.id == Some(commands.id()) { Ok(()) } else { Err(Error::Unprepared) }
     }
 
     /// Where a piece of work begins.

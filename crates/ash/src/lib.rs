@@ -57,7 +57,7 @@
 //!     let model = Model::new(commands, &[&patches])?;
 //!     let capacity = Capacity { placements: 1, segments: 10_000 };
 //!     let mut contours = MeshContours::new(&pass, &model, capacity)?;
-//!     contours.prepare(&pass, commands, &[placement], Method::Patches)?;
+//!     contours.prepare(commands, &[placement], Method::Patches)?;
 //!     pass.extract(commands, &contours)?;
 //!     contours.download(commands)
 //! })?;

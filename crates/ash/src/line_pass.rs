@@ -74,6 +74,7 @@ impl LinePass {
     /// If rendering is to other attachments than the pass was made for, or of another device.
     pub fn record(&self, rendering: &mut Rendering<'_>, contours: &Contours) -> Result<(), Error> {
         rendering.check(&self.device, "the pass of lines")?;
+        contours.input.check(rendering.commands())?;
         let sets: [(&Set, &[u32]); 2] = [(self.look.set(), &[]), (&contours.segment_set, &[])];
         rendering.bind(&self.pipeline, "the pass of lines", &sets)?;
         rendering.draw_indirect(contours.arguments(), Arguments::LINE_LIST);

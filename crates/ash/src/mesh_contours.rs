@@ -2,17 +2,17 @@
 
 use ash::vk::BufferUsageFlags as Usage;
 use drypoint_shaders::{
-    Culling, Draw, DrawCounters, DrawPlan, MeshShape, Method, Placement, Segment, Statistics, Work,
+    Culling, Draw, DrawCounters, DrawPlan, Method, Placement, Segment, Statistics, Work,
 };
 
 use crate::Error;
 use crate::binding::{Resource, Set};
 use crate::commands::{Commands, Download, Executed, Use};
-use crate::contours::{Capacity, check, segments};
+use crate::contours::{Capacity, segments};
 use crate::input::Input;
 use crate::layouts;
 use crate::memory::Buffer;
-use crate::mesh_pass::MeshPass;
+use crate::mesh_pass::{MeshLimits, MeshPass};
 use crate::model::Model;
 
 /// Instances of one model to be drawn by a [`MeshPass`], and what is counted meanwhile. No list of contour edges
@@ -30,8 +30,8 @@ pub struct MeshContours {
     pub(crate) work_set: Set,
     pub(crate) vertex_set: Set,
     pub(crate) draws: Vec<Draw>,
-    /// What draws were cut for.
-    pub(crate) shape: MeshShape,
+    /// What draws are cut for.
+    pub(crate) limits: MeshLimits,
 }
 
 impl MeshContours {
@@ -41,15 +41,16 @@ impl MeshContours {
     /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer.
     pub fn new(pass: &MeshPass, model: &Model, capacity: Capacity) -> Result<Self, Error> {
         let device = pass.device();
-        check(device, model)?;
+        model.check(device)?;
         let make = |what, size: u64| {
             let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
             Buffer::new(device, what, size, usage)
         };
+        let limits = pass.limits();
         let segment_capacity = if pass.records() { capacity.segments } else { 0 };
         let capacity = Capacity { segments: segment_capacity, ..capacity };
         let instances = capacity.placements / model.part_count().max(1);
-        let draws = plan(pass, model, Method::Patches, (instances, capacity)).most_draws().max(1);
+        let draws = plan(limits, model, Method::Patches, (instances, capacity)).most_draws().max(1);
         let input = Input::new(device, capacity.placements, draws)?;
         let size = size_of::<DrawCounters>() as u64;
         let stride =
@@ -84,12 +85,12 @@ impl MeshContours {
             work_set,
             vertex_set,
             draws: Vec::new(),
-            shape: pass.shape(),
+            limits,
         })
     }
 
     /// Records what the next [`MeshPass::record`] is to draw: part p of instance i is at
-    /// `i * part_count + p` of `placements`. Outside of rendering.
+    /// `i * part_count + p` of `placements`. In the same commands, and outside of rendering.
     ///
     /// # Errors
     /// If there are more placements than there is room for or not one for each part, if one has no inverse, or
@@ -97,17 +98,15 @@ impl MeshContours {
     /// it succeeds again.
     pub fn prepare(
         &mut self,
-        pass: &MeshPass,
         commands: &mut Commands,
         placements: &[Placement],
         method: Method,
     ) -> Result<(), Error> {
-        commands.check(self.model.device(), "contours")?;
-        pass.check(self.shape)?;
+        self.model.check(commands.device())?;
         self.draws.clear();
         self.input.place(&self.model, placements, method)?;
         let instances = self.input.count() / self.model.part_count();
-        plan(pass, &self.model, method, (instances, self.capacity))
+        plan(self.limits, &self.model, method, (instances, self.capacity))
             .draws(&mut |draw| self.draws.push(draw));
         self.input.record(commands, self.draws.iter().map(|draw| &draw.work));
         commands.clear(&self.counters);
@@ -133,8 +132,13 @@ impl MeshContours {
             counters: commands.download("counters", &self.counters)?,
             stride: self.stride as usize,
             draws: self.draws.clone(),
-            segments: commands.download("segments", &self.segments)?,
-            capacity: self.capacity.segments,
+            segments: self
+                .limits
+                .shape
+                .records
+                .then(|| commands.download("segments", &self.segments))
+                .transpose()?,
+            capacity: if self.limits.shape.records { self.capacity.segments } else { u32::MAX },
         })
     }
 
@@ -144,7 +148,7 @@ impl MeshContours {
 }
 
 fn plan<'a>(
-    pass: &MeshPass,
+    limits: MeshLimits,
     model: &'a Model,
     method: Method,
     (instances, capacity): (u32, Capacity),
@@ -156,7 +160,7 @@ fn plan<'a>(
         method,
         instances,
         segment_capacity: capacity.segments,
-        limits: pass.limits(method),
+        limits: limits.of(method),
     }
 }
 
@@ -166,14 +170,15 @@ pub struct FoundByMesh {
     counters: Download,
     stride: usize,
     draws: Vec<Draw>,
-    segments: Download,
+    /// None if they are not recorded.
+    segments: Option<Download>,
     capacity: u32,
 }
 
 /// What one frame of mesh shaders found, tested and launched, all instances together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshStatistics {
-    /// Contour edges and tests. No capacity where segments are not recorded.
+    /// Contour edges and tests. Where segments are not recorded, the capacity is `u32::MAX`.
     pub found: Statistics,
     /// Patches that were not culled, counted piece by piece (those of more than
     /// [`MAX_PIECE`](drypoint_shaders::MAX_PIECE) edges), and such pieces of edges that no patch holds.
@@ -215,11 +220,13 @@ impl FoundByMesh {
         Ok(all)
     }
 
-    /// All segments, in any order, if the pass records them.
+    /// All segments, in any order; none if the pass records none.
     ///
     /// # Errors
     /// [`Error::Overflow`] if not all fit, or if it was asked for in other commands.
     pub fn segments(&self, executed: &Executed) -> Result<Vec<Segment>, Error> {
-        segments(&self.segments, executed, &self.statistics(executed)?.found)
+        let found = self.statistics(executed)?.found;
+        let all = self.segments.as_ref().map(|download| segments(download, executed, &found));
+        all.unwrap_or(Ok(Vec::new()))
     }
 }

@@ -6,6 +6,7 @@ use glam::Mat4;
 
 use crate::binding::{Layout, Set};
 use crate::commands::Commands;
+use crate::device::MeshProperties;
 use crate::look::{Look, compare};
 use crate::mesh_contours::MeshContours;
 use crate::pipeline::{Blending, Drawing, Formats, Pipeline};
@@ -176,7 +177,7 @@ impl MeshPass {
     }
 
     /// Records the look of lines, and the matrix from the space of the scene to clip space, for what is recorded
-    /// from here on. Outside of rendering. To be called before [`MeshPass::record`], even where nothing is drawn.
+    /// from here on. Outside of rendering.
     ///
     /// # Errors
     /// If the commands are of another device.
@@ -219,7 +220,10 @@ impl MeshPass {
         style: &Set,
     ) -> Result<(), Error> {
         rendering.check(&self.device, "the pass of mesh shaders")?;
-        self.check(contours.shape)?;
+        contours.input.check(rendering.commands())?;
+        if contours.limits.shape != self.shape {
+            return Err(Error::OtherPass);
+        }
         for (index, draw) in contours.draws.iter().enumerate() {
             let offsets = [contours.input.offset(index), contours.counters_offset(index)];
             let model = contours.model().bindings(draw.chunk);
@@ -236,20 +240,25 @@ impl MeshPass {
         Ok(())
     }
 
-    pub(crate) fn shape(&self) -> MeshShape {
-        self.shape
+    pub(crate) fn limits(&self) -> MeshLimits {
+        let MeshProperties { task_grid, mesh_grid, .. } = self.device.mesh_properties();
+        MeshLimits { shape: self.shape, task_grid, mesh_grid }
     }
+}
 
-    /// Whether workgroups are of the sizes that draws were cut for.
-    pub(crate) fn check(&self, shape: MeshShape) -> Result<(), Error> {
-        if self.shape == shape { Ok(()) } else { Err(Error::OtherPass) }
-    }
+/// What draws are cut for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeshLimits {
+    pub(crate) shape: MeshShape,
+    task_grid: [u32; 2],
+    mesh_grid: [u32; 2],
+}
 
-    pub(crate) fn limits(&self, method: Method) -> DrawLimits {
-        let mesh = self.device.mesh_properties();
+impl MeshLimits {
+    pub(crate) fn of(self, method: Method) -> DrawLimits {
         let [row, workgroups] = match method {
-            Method::BruteForce => mesh.mesh_grid,
-            Method::Patches => mesh.task_grid,
+            Method::BruteForce => self.mesh_grid,
+            Method::Patches => self.task_grid,
         };
         DrawLimits { shape: self.shape, row, workgroups, edges: 1 << 28 }
     }

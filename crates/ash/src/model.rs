@@ -8,7 +8,7 @@ use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_shaders::{BLOCK_PATCHES, Chunk, Content, EdgePlanes, Frame, Group, MAX_PIECE};
 
 use crate::binding::{Layout, Resource, Set};
-use crate::commands::{Commands, Use};
+use crate::commands::{Commands, Fate, Use};
 use crate::memory::Buffer;
 use crate::{Device, Error, layouts};
 
@@ -24,6 +24,7 @@ pub struct Model {
 #[derive(Debug)]
 struct Uploaded {
     device: Device,
+    fate: Fate,
     frames: Vec<Frame>,
     /// Pieces that fit the device's bindings ...
     chunks: Vec<Chunk>,
@@ -93,6 +94,7 @@ impl Model {
         Ok(Self {
             content: Arc::new(Uploaded {
                 device,
+                fate: commands.fate().clone(),
                 frames: content.frames.clone(),
                 chunks,
                 block_counts,
@@ -124,6 +126,13 @@ impl Model {
     pub(crate) fn is_of(&self, meshes: &[&Mesh]) -> bool {
         let vertices: usize = meshes.iter().map(|mesh| mesh.positions().len()).sum();
         meshes.len() == self.content.frames.len() && self.content.vertex_count == vertices
+    }
+
+    /// Fails if it was made for another device, or never uploaded.
+    pub(crate) fn check(&self, device: &Device) -> Result<(), Error> {
+        let what = "the model";
+        self.content.fate.check(what)?;
+        if self.content.device.is(device) { Ok(()) } else { Err(Error::OtherDevice { what }) }
     }
 
     pub(crate) fn device(&self) -> &Device {

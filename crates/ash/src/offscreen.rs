@@ -5,7 +5,7 @@ use drypoint_shaders::divide_by_alpha;
 
 use crate::Error;
 use crate::canvas::check_size;
-use crate::commands::{Commands, Download, Executed, Use};
+use crate::commands::{Commands, Download, Executed, Fate, Use};
 use crate::memory::Image;
 use crate::rendering::{Rendering, Targets};
 
@@ -13,6 +13,7 @@ use crate::rendering::{Rendering, Targets};
 #[derive(Debug)]
 pub struct Offscreen {
     color: Image,
+    fate: Fate,
 }
 
 /// What an [`Offscreen`] showed when the commands executed.
@@ -39,7 +40,7 @@ impl Offscreen {
         let color = Image::new(device, "a picture", size, (Self::FORMAT, usage))?;
         let undefined = (Use::ANYTHING, vk::ImageLayout::UNDEFINED);
         commands.transition(&color, undefined, (Use::DRAWN_TO, TO_DRAW));
-        Ok(Self { color })
+        Ok(Self { color, fate: commands.fate().clone() })
     }
 
     /// Begins rendering to it, in place of what was there, until what is given goes.
@@ -66,6 +67,7 @@ impl Offscreen {
     /// # Errors
     /// If the commands are of another device, or there is not enough memory for the copy.
     pub fn download(&self, commands: &mut Commands) -> Result<Pixels, Error> {
+        self.fate.check("the picture")?;
         commands.check(self.color.device(), "the picture")?;
         commands.transition(&self.color, (Use::DRAWN_TO, TO_DRAW), (Use::COPIED_FROM, TO_COPY));
         let download = commands.download_image("a picture", &self.color)?;

@@ -102,6 +102,10 @@ impl Rendering<'_> {
         self.commands.device()
     }
 
+    pub(crate) fn commands(&self) -> &Commands {
+        self.commands
+    }
+
     pub(crate) fn check(&self, device: &Device, what: &'static str) -> Result<(), Error> {
         self.commands.check(device, what)
     }

@@ -82,7 +82,8 @@ fn compile(
         bounds_check_policies: BoundsCheckPolicies {
             index: checks,
             buffer: checks,
-            image_load: checks,
+            // Pixels beyond an image are asked for where the caller renders to a larger one.
+            image_load: BoundsCheckPolicy::Restrict,
             binding_array: checks,
         },
         force_loop_bounding: false,

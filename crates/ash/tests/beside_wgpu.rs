@@ -95,7 +95,7 @@ fn mesh_shaders_run_on_a_device_of_wgpu() {
         let found = Model::new(&mut commands, &[&set]).and_then(|model| {
             let capacity = Capacity { placements: all.len() as u32, segments: 50_000 };
             let mut contours = MeshContours::new(&pass, &model, capacity)?;
-            contours.prepare(&pass, &mut commands, &all, Method::Patches)?;
+            contours.prepare(&mut commands, &all, Method::Patches)?;
             pass.extract(&mut commands, &contours)?;
             contours.download(&mut commands)
         });

@@ -29,7 +29,7 @@ fn by_mesh(
     let mut queries = Queries::new(gpu.device(), Counting::MeshShaders).expect("it can count");
     let (found, executed) = gpu
         .run(|commands| {
-            contours.prepare(pass, commands, placements, method)?;
+            contours.prepare(commands, placements, method)?;
             pass.prepare(commands, Mat4::IDENTITY, &Default::default())?;
             queries.begin(commands)?;
             pass.extract(commands, contours)?;
@@ -53,7 +53,7 @@ fn by_compute(
     let mut queries = Queries::new(gpu.device(), Counting::Compute).expect("it can count");
     let (found, executed) = gpu
         .run(|commands| {
-            contours.prepare(extractor, commands, placements, method)?;
+            contours.prepare(commands, placements, method)?;
             queries.begin(commands)?;
             extractor.record(commands, contours)?;
             queries.end(commands)?;
@@ -256,8 +256,7 @@ fn parts_are_placed_one_by_one() {
             }
             assert!(found.is_empty());
         }
-        let uneven =
-            gpu.run(|commands| contours.prepare(&pass, commands, &all[..4], Method::Patches));
+        let uneven = gpu.run(|commands| contours.prepare(commands, &all[..4], Method::Patches));
         assert_eq!(uneven.err(), Some(Error::UnevenPlacements { given: 4, parts: 3 }));
     }
     support::expect_silence();
@@ -283,7 +282,7 @@ fn what_does_not_fit_is_counted_and_not_written() {
         let mut contours = MeshContours::new(&pass, &model, tight).expect("there is memory");
         let (again, executed) = gpu
             .run(|commands| {
-                contours.prepare(&pass, commands, all, Method::Patches)?;
+                contours.prepare(commands, all, Method::Patches)?;
                 pass.extract(commands, &contours)?;
                 contours.download(commands)
             })
@@ -329,13 +328,14 @@ fn nothing_is_found_of_nothing_and_what_cannot_be_is_refused() {
         (vec![good, flat], Error::SingularPlacement { index: 1 }),
         (vec![nowhere], Error::SingularPlacement { index: 0 }),
     ] {
-        let refused = gpu.run(|commands| {
-            let refused = contours.prepare(&pass, commands, &placements, Method::Patches);
-            // What was refused left nothing of the frame before.
-            pass.extract(commands, &contours)?;
-            refused
-        });
+        let refused = gpu.run(|commands| contours.prepare(commands, &placements, Method::Patches));
         assert_eq!(refused.err(), Some(error));
+        // What was refused left nothing of the frame before.
+        let stale = gpu.run(|commands| {
+            let _ = contours.prepare(commands, &placements, Method::Patches);
+            pass.extract(commands, &contours)
+        });
+        assert_eq!(stale.err(), Some(Error::Unprepared));
     }
     let adjacency = MeshAdjacency::new(&mesh);
     let (bare, _) = gpu
@@ -344,7 +344,7 @@ fn nothing_is_found_of_nothing_and_what_cannot_be_is_refused() {
     let mut contours = MeshContours::new(&pass, &bare, capacity).expect("there is memory");
     let (found, _) = by_mesh(&gpu, &pass, &mut contours, &[good], Method::BruteForce);
     Expected::new(&set, &[good]).compare(&found.segments, "a bare mesh");
-    let error = gpu.run(|commands| contours.prepare(&pass, commands, &[good], Method::Patches));
+    let error = gpu.run(|commands| contours.prepare(commands, &[good], Method::Patches));
     assert_eq!(error.err(), Some(Error::NoPatches));
     let error = gpu.run(|commands| Model::new(commands, &[]));
     assert_eq!(error.err(), Some(Error::NoParts));
@@ -376,7 +376,7 @@ fn what_commands_use_stays_until_they_have_executed() {
             let model = Model::new(commands, &[&set])?;
             let capacity = Capacity { placements: 4, segments: 20_000 };
             let mut contours = MeshContours::new(&pass, &model, capacity)?;
-            contours.prepare(&pass, commands, all, Method::Patches)?;
+            contours.prepare(commands, all, Method::Patches)?;
             pass.extract(commands, &contours)?;
             contours.download(commands)
         })
@@ -413,7 +413,7 @@ fn queries_are_refused_where_they_do_not_fit_and_new_where_they_are_under_way() 
         let model = Model::new(commands, &[&set])?;
         let capacity = Capacity { placements: 2, segments: 1_000 };
         let mut contours = MeshContours::new(&pass, &model, capacity)?;
-        contours.prepare(&pass, commands, all, Method::Patches)?;
+        contours.prepare(commands, all, Method::Patches)?;
         compute.begin(commands)?;
         pass.extract(commands, &contours)
     });
@@ -424,7 +424,7 @@ fn queries_are_refused_where_they_do_not_fit_and_new_where_they_are_under_way() 
         let capacity = Capacity { placements: 2, segments: 1_000 };
         let mut contours = MeshContours::new(&pass, &model, capacity)?;
         for few in [1, 2] {
-            contours.prepare(&pass, commands, &all[..few], Method::BruteForce)?;
+            contours.prepare(commands, &all[..few], Method::BruteForce)?;
             mesh.begin(commands)?;
             pass.extract(commands, &contours)?;
             mesh.end(commands)?;

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 
 use ash::vk;
 use drypoint_ash::{
-    Attached, Capacity, Contours, Counting, DepthOrder, Error, Extractor, Gpu, LinePass, LineStyle,
-    MeshContours, MeshOptions, MeshOutput, MeshPass, Method, Model, Picture, Placement, Queries,
-    Subject, Surface, View,
+    Attached, Canvas, Capacity, Commands, Contours, Counting, DepthOrder, Error, Extractor, Gpu,
+    LinePass, LineStyle, MeshContours, MeshOptions, MeshOutput, MeshPass, Method, Model, Offscreen,
+    Picture, Placement, Queries, Subject, Surface, View,
 };
 use drypoint_fusion::{Levels, PatchSet};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint, contour_edges, shapes};
@@ -54,7 +54,7 @@ fn lines_in_two_passes(gpu: &Gpu, model: &Model, method: Method) -> (Vec<[u8; 4]
         gpu,
         (FORMAT, SIZE),
         |commands| {
-            contours.prepare(&extractor, commands, &placements, method)?;
+            contours.prepare(commands, &placements, method)?;
             extractor.record(commands, &contours)?;
             pass.prepare(commands, scene_to_clip, &LineStyle::default())?;
             let found = contours.download(commands)?;
@@ -66,7 +66,7 @@ fn lines_in_two_passes(gpu: &Gpu, model: &Model, method: Method) -> (Vec<[u8; 4]
     // Counted outside of rendering: once more, drawing nothing.
     let (_, executed) = gpu
         .run(|commands| {
-            contours.prepare(&extractor, commands, &placements, method)?;
+            contours.prepare(commands, &placements, method)?;
             queries.begin(commands)?;
             extractor.record(commands, &contours)?;
             queries.end(commands)
@@ -93,7 +93,7 @@ fn lines_in_one_pass(
         gpu,
         (FORMAT, SIZE),
         |commands| {
-            contours.prepare(&pass, commands, &placements, method)?;
+            contours.prepare(commands, &placements, method)?;
             pass.prepare(commands, scene_to_clip, &LineStyle::default())?;
             Ok(contours)
         },
@@ -209,14 +209,14 @@ fn strokes(gpu: &Gpu, model: &Model, mesh: &Mesh, by_mesh: bool, method: Method)
                 let pass = picture.mesh_pass();
                 let mut contours = MeshContours::new(pass, model, CAPACITY)?;
                 let surface = Surface::new(commands, &contours, &[mesh])?;
-                contours.prepare(pass, commands, &placements, method)?;
+                contours.prepare(commands, &placements, method)?;
                 let subject = Subject { contours: (&contours).into(), surface: &surface };
                 picture.draw(commands, &view, &[subject])
             } else {
                 let extractor = Extractor::new(gpu.device())?;
                 let mut contours = Contours::new(&extractor, model, CAPACITY)?;
                 let surface = Surface::new(commands, &contours, &[mesh])?;
-                contours.prepare(&extractor, commands, &placements, method)?;
+                contours.prepare(commands, &placements, method)?;
                 extractor.record(commands, &contours)?;
                 let subject = Subject { contours: (&contours).into(), surface: &surface };
                 picture.draw(commands, &view, &[subject])
@@ -261,15 +261,19 @@ fn what_does_not_fit_together_is_refused() {
     // Nothing is drawn by it, but it is not for that.
     let (mut prepared, placement) = (contours, scene().0[0]);
     let error = gpu.run(|commands| {
-        prepared.prepare(&lines, commands, &[placement], Method::Patches)?;
+        prepared.prepare(commands, &[placement], Method::Patches)?;
         lines.extract(commands, &prepared)
     });
     assert!(matches!(error.expect_err("it draws"), Error::Refused { .. }));
     let narrow = MeshOptions { edges_per_workgroup: Some(16), ..MeshOptions::default() };
     let narrow = MeshPass::new(gpu.device(), &narrow).expect("shaders compile");
-    let error =
-        gpu.run(|commands| prepared.prepare(&narrow, commands, &[placement], Method::Patches));
+    let error = gpu.run(|commands| {
+        prepared.prepare(commands, &[placement], Method::Patches)?;
+        narrow.extract(commands, &prepared)
+    });
     assert_eq!(error.expect_err("other workgroups"), Error::OtherPass);
+    let error = gpu.run(|commands| lines.extract(commands, &prepared));
+    assert_eq!(error.expect_err("in other commands"), Error::Unprepared);
     let error = gpu.run(|commands| Surface::new(commands, &prepared, &[&shapes::icosphere(500)]));
     assert_eq!(error.expect_err("another mesh"), Error::OtherMeshes);
     let error = gpu.run(|commands| Picture::new(commands, [0, 5], DepthOrder::Standard));
@@ -283,5 +287,104 @@ fn what_does_not_fit_together_is_refused() {
     let (found, _) = gpu.run(|commands| prepared.download(commands)).expect("it is copied");
     let error = found.statistics(&executed).expect_err("other commands");
     assert!(matches!(error, Error::OtherCommands { .. }));
+    support::expect_silence();
+}
+
+/// What safe code can get wrong, and the GPU must not hear of.
+#[test]
+fn what_was_never_executed_or_made_for_others_is_refused() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let mesh = shapes::icosphere(100);
+    let set = patches(&mesh, Levels::One);
+    let extractor = Extractor::new(gpu.device()).expect("shaders compile");
+    let (placements, scene_to_clip) = scene();
+    let style = LineStyle::default();
+    let view = View { scene_to_clip, background: [1.0; 4], lines: style };
+    let mut leaked = None;
+    let stop = gpu.run(|commands| {
+        leaked = Some((Model::new(commands, &[&set])?, Offscreen::new(commands, SIZE)?));
+        Err::<(), _>(Error::NoPatches)
+    });
+    assert_eq!(stop.err(), Some(Error::NoPatches));
+    let (never, offscreen) = leaked.expect("it was made");
+    let error = Contours::new(&extractor, &never, CAPACITY).expect_err("it is empty");
+    assert_eq!(error, Error::Abandoned { what: "the model" });
+    let error = gpu.run(|commands| offscreen.download(commands)).expect_err("it is nothing");
+    assert_eq!(error, Error::Abandoned { what: "the picture" });
+
+    let model = model(&gpu, &set);
+    let mut contours = Contours::new(&extractor, &model, CAPACITY).expect("there is memory");
+    let mut others = Contours::new(&extractor, &model, CAPACITY).expect("there is memory");
+    let ((picture, surface), _) = gpu
+        .run(|commands| {
+            let picture = Picture::new(commands, SIZE, DepthOrder::Standard)?;
+            Ok((picture, Surface::new(commands, &contours, &[&mesh])?))
+        })
+        .expect("there is memory");
+    let draw = |contours: &Contours, commands: &mut Commands| {
+        let subject = Subject { contours: contours.into(), surface: &surface };
+        picture.draw(commands, &view, &[subject]).map(|_| ())
+    };
+    let error = gpu.run(|commands| draw(&contours, commands)).expect_err("nothing is prepared");
+    assert_eq!(error, Error::Unprepared);
+    let error = gpu.run(|commands| extractor.record(commands, &contours));
+    assert_eq!(error.expect_err("nothing is prepared"), Error::Unprepared);
+    let error = gpu.run(|commands| {
+        others.prepare(commands, &placements, Method::Patches)?;
+        draw(&others, commands)
+    });
+    assert_eq!(error.expect_err("the surface is of others"), Error::OtherContours);
+    // Nothing has been extracted: nothing is drawn.
+    let drawn = gpu.run(|commands| {
+        contours.prepare(commands, &placements, Method::Patches)?;
+        draw(&contours, commands)
+    });
+    drawn.expect("it is drawn");
+    support::expect_silence();
+}
+
+/// A canvas that is inked into something larger reads no pixel that it does not have.
+#[test]
+fn a_canvas_takes_other_sizes() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let mesh = shapes::torus_knot(3_000);
+    let model = model(&gpu, &patches(&mesh, Levels::One));
+    let (placements, scene_to_clip) = scene();
+    let view = View { scene_to_clip, background: [1.0; 4], lines: LineStyle::default() };
+    let draw = |canvas: &Canvas, size: [u32; 2]| {
+        let (pixels, executed) = gpu
+            .run(|commands| {
+                let mut contours = MeshContours::new(canvas.mesh_pass(), &model, CAPACITY)?;
+                let surface = Surface::new(commands, &contours, &[&mesh])?;
+                contours.prepare(commands, &placements, Method::Patches)?;
+                let subject = Subject { contours: (&contours).into(), surface: &surface };
+                canvas.cover(commands, &view, &[subject])?;
+                let offscreen = Offscreen::new(commands, size)?;
+                canvas.ink(&mut offscreen.render(commands, [1.0; 4])?)?;
+                offscreen.download(commands)
+            })
+            .expect("it is drawn");
+        pixels.read(&executed).expect("it was drawn by these")
+    };
+    let make = |size| {
+        let made = gpu
+            .run(|commands| Canvas::new(commands, size, DepthOrder::Standard, Offscreen::FORMAT));
+        made.expect("there is memory").0
+    };
+    let fresh = draw(&make(SIZE), SIZE);
+    assert!(fresh.chunks(4).filter(|pixel| pixel[0] < 100).count() > 500);
+    let mut canvas = make([64, 64]);
+    draw(&canvas, SIZE);
+    gpu.run(|commands| canvas.resize(commands, SIZE)).expect("there is memory");
+    assert!(draw(&canvas, SIZE) == fresh, "a canvas of that size from the beginning");
+    let error = gpu.run(|commands| canvas.resize(commands, [0, 1])).expect_err("no pixels");
+    assert!(matches!(error, Error::PictureSize { .. }));
+    assert!(draw(&canvas, SIZE) == fresh, "it stays as it was");
     support::expect_silence();
 }

@@ -30,7 +30,7 @@ fn only_what_was_begun_and_ended_has_a_time() -> Result<(), Error> {
     let mut extract = |timer: &mut Timer| -> Result<Executed, Error> {
         let ((all, counted), executed) = gpu.run(|commands| {
             timer.begin(commands)?;
-            contours.prepare(&extractor, commands, &[placement], Method::Patches)?;
+            contours.prepare(commands, &[placement], Method::Patches)?;
             extractor.record(commands, &contours)?;
             timer.end(commands)?;
             Ok((contours.download(commands)?, contours.download_statistics(commands)?))

@@ -95,8 +95,13 @@ impl Show for Viewer {
         _: &ActiveEventLoop,
     ) -> Result<Self, Box<dyn Error>> {
         let listener = args.validate.then(|| Arc::new(tell) as Listener);
-        let extensions = swapchain::extensions(window)?;
-        let gpu = Gpu::request_with(&GpuOptions { listener, extensions, ..GpuOptions::default() })?;
+        let [instance_extensions, device_extensions] = swapchain::extensions(window)?;
+        let gpu = Gpu::request_with(&GpuOptions {
+            listener,
+            instance_extensions,
+            device_extensions,
+            ..GpuOptions::default()
+        })?;
         let size = window.inner_size();
         let size = [size.width, size.height];
         let swapchain = Swapchain::new(&gpu, window, size)?;

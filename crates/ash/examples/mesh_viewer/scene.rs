@@ -74,7 +74,8 @@ impl Scene {
         gpu: &Gpu,
         attachments: &Attachments,
     ) -> Result<(), drypoint_ash::Error> {
-        (self.canvas, self.size) = (canvas(gpu, attachments)?, attachments.size);
+        gpu.run(|commands| self.canvas.resize(commands, attachments.size))?;
+        self.size = attachments.size;
         Ok(())
     }
 
@@ -102,12 +103,12 @@ impl Scene {
         let subject = match self.shaders {
             Shaders::Mesh => {
                 let (contours, surface) = &mut self.mesh;
-                contours.prepare(self.canvas.mesh_pass(), commands, &placements, method)?;
+                contours.prepare(commands, &placements, method)?;
                 Subject { contours: (&*contours).into(), surface }
             }
             Shaders::Compute => {
                 let (contours, surface) = &mut self.compute;
-                contours.prepare(&self.extractor, commands, &placements, method)?;
+                contours.prepare(commands, &placements, method)?;
                 self.extractor.record(commands, contours)?;
                 Subject { contours: (&*contours).into(), surface }
             }

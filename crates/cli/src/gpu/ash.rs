@@ -22,7 +22,7 @@ pub(super) fn extract(
         let capacity = Capacity { placements: 1, segments };
         let mut contours = MeshContours::new(&pass, &model, capacity)?;
         let (found, executed) = gpu.run(|commands| {
-            contours.prepare(&pass, commands, &[*placement], Method::Patches)?;
+            contours.prepare(commands, &[*placement], Method::Patches)?;
             pass.prepare(commands, Mat4::IDENTITY, &LineStyle::default())?;
             pass.extract(commands, &contours)?;
             contours.download(commands)
@@ -44,7 +44,7 @@ pub(super) fn draw(frame: &Frame<'_>) -> Result<Vec<u8>, Error> {
         let mut contours = MeshContours::new(picture.mesh_pass(), &model, capacity)?;
         let surface = Surface::new(commands, &contours, &[frame.mesh])?;
         let placements = [frame.placement];
-        contours.prepare(picture.mesh_pass(), commands, &placements, frame.method())?;
+        contours.prepare(commands, &placements, frame.method())?;
         let subject = Subject { contours: (&contours).into(), surface: &surface };
         picture.draw(commands, &frame.view, &[subject])
     })?;

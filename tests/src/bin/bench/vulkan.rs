@@ -168,7 +168,7 @@ impl<'a> Frames<'a> {
     ) -> Result<[Vec<drypoint_ash::Segment>; 2], Error> {
         let Self { gpu, extractor, placements, .. } = self;
         let (found, executed) = gpu.run(|commands| {
-            subject.computed.prepare(extractor, commands, placements, subject.method)?;
+            subject.computed.prepare(commands, placements, subject.method)?;
             extractor.record(commands, &subject.computed)?;
             subject.computed.download(commands)
         })?;
@@ -178,7 +178,7 @@ impl<'a> Frames<'a> {
             let model = Model::upload(commands, content)?;
             let capacity = Capacity { segments, ..subject.computed.capacity() };
             let mut contours = MeshContours::new(&pass, &model, capacity)?;
-            contours.prepare(&pass, commands, placements, subject.method)?;
+            contours.prepare(commands, placements, subject.method)?;
             pass.extract(commands, &contours)?;
             contours.download(commands)
         })?;
@@ -214,7 +214,7 @@ impl<'a> Frames<'a> {
         let mut queries = Queries::new(self.gpu.device(), Counting::Compute)?;
         let ((found, pixels), executed) = self.gpu.run(|commands| {
             let contours = &mut subject.computed;
-            contours.prepare(&self.extractor, commands, &self.placements, subject.method)?;
+            contours.prepare(commands, &self.placements, subject.method)?;
             queries.begin(commands)?;
             self.extractor.record(commands, contours)?;
             self.line_pass.record(&mut self.offscreen.render(commands, [1.0; 4])?, contours)?;
@@ -237,7 +237,7 @@ impl<'a> Frames<'a> {
         let mut queries = Queries::new(self.gpu.device(), Counting::MeshShaders)?;
         let ((found, pixels), executed) = self.gpu.run(|commands| {
             let contours = &mut subject.meshed;
-            contours.prepare(&self.mesh_pass, commands, &self.placements, subject.method)?;
+            contours.prepare(commands, &self.placements, subject.method)?;
             queries.begin(commands)?;
             self.mesh_pass.record(&mut self.offscreen.render(commands, [1.0; 4])?, contours)?;
             queries.end(commands)?;
@@ -288,11 +288,11 @@ impl<'a> Frames<'a> {
         let Subject { method, computed, meshed, .. } = subject;
         let ((), executed) = gpu.run(|commands| {
             if is_mesh {
-                meshed.prepare(mesh_pass, commands, placements, *method)?;
+                meshed.prepare(commands, placements, *method)?;
                 timer.begin(commands)?;
                 mesh_pass.record(&mut offscreen.render(commands, [1.0; 4])?, meshed)?;
             } else {
-                computed.prepare(extractor, commands, placements, *method)?;
+                computed.prepare(commands, placements, *method)?;
                 timer.begin(commands)?;
                 extractor.record(commands, computed)?;
                 line_pass.record(&mut offscreen.render(commands, [1.0; 4])?, computed)?;

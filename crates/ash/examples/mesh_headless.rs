@@ -1,4 +1,4 @@
-//! Draws the contours of a model to a PNG in one pass of mesh shaders: `headless [MODEL.obj] [OUT.png]`.
+//! Draws the contours of a model to a PNG in one pass of mesh shaders: `mesh_headless [MODEL.obj] [OUT.png]`.
 #![allow(clippy::print_stdout, reason = "the counts are what this program is for")]
 
 use std::error::Error;
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = View { scene_to_clip, background: [1.0; 4], lines: LineStyle::default() };
     let placement = Placement::at_origin(Viewpoint::at(eye));
     let ((pixels, found), executed) = gpu.run(|commands| {
-        contours.prepare(picture.mesh_pass(), commands, &[placement], Method::Patches)?;
+        contours.prepare(commands, &[placement], Method::Patches)?;
         let subject = Subject { contours: (&contours).into(), surface: &surface };
         let pixels = picture.draw(commands, &view, &[subject])?;
         Ok((pixels, contours.download(commands)?))
