@@ -9,7 +9,7 @@ use drypoint_ash::{
 };
 use drypoint_fusion::{Levels, PatchSet};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, Viewpoint, shapes};
-use drypoint_shaders::Content;
+use drypoint_shaders::{BLOCK_PATCHES, Content, Group};
 use glam::{DAffine3, DVec3, Mat4};
 use support::{Expected, gpu, patches, placements};
 
@@ -91,8 +91,74 @@ fn check(
         let all = (set.wings().len() * placements.len()) as u64;
         assert_eq!(compute.counts.compute_invocations > 0, all > 0, "{what}");
         check_launched(pass, method, (&mesh.counts, &drawn), all, &what);
+        if method == Method::Patches {
+            let [needed, borderline] = needed(pass, set, placements);
+            let differ = needed.abs_diff(drawn.mesh_workgroups);
+            assert!(
+                differ <= borderline,
+                "{what}: {needed} are needed, not {}",
+                drawn.mesh_workgroups
+            );
+        }
         assert_eq!(drawn.found, found, "{what}");
     }
+}
+
+/// Mesh workgroups that the survivors of each task workgroup fill, and patches of which rounding decides whether
+/// they are such: culling done again on the processor, in f32.
+fn needed(pass: &MeshPass, set: &PatchSet, placements: &[Placement]) -> [u64; 2] {
+    let content = Content::new(&[set]);
+    let frame = content.frames[0];
+    let viewpoints: Vec<_> = placements
+        .iter()
+        .map(|placement| frame.viewpoint(placement.viewpoint_of_part().expect("it has an inverse")))
+        .collect();
+    let mut borderline = 0;
+    let mut survives = |group: &Group, instance: usize| {
+        let seen = viewpoints[instance];
+        let grown = |growth: f32| {
+            let mut bound = group.bound;
+            bound.apex_distance = bound.apex_distance * (1.0 + growth) + growth;
+            bound.tan_squared *= 1.0 + growth;
+            bound.may_hold_contour_towards(seen.truncate() - seen.w * bound.center, seen.w)
+        };
+        borderline += u64::from(grown(4e-6) != grown(-4e-6));
+        grown(0.0)
+    };
+    let lanes = u64::from(pass.edges_per_workgroup());
+    let workgroups = |edges: u64| edges.div_ceil(lanes);
+    let chunk = &content.chunks(u32::MAX, u32::MAX)[..];
+    let Some(chunk) = chunk.first() else { return [0, 0] };
+    let mut all = 0;
+    if chunk.super_patches.is_empty() {
+        // Lanes are numbered through, from instance to instance.
+        let instances = 0..placements.len();
+        let items = instances.flat_map(|i| chunk.patches.iter().map(move |patch| (i, patch)));
+        let items: Vec<_> = items.collect();
+        for of_workgroup in items.chunks(pass.task_width() as usize) {
+            let edges = of_workgroup.iter().map(|(instance, patch)| {
+                if survives(patch, *instance) { u64::from(patch.count) } else { 0 }
+            });
+            all += workgroups(edges.sum());
+        }
+        return [all, borderline];
+    }
+    let blocks = chunk.blocks(BLOCK_PATCHES);
+    for instance in 0..placements.len() {
+        for block in blocks.windows(2) {
+            let mut edges = 0;
+            for group in &chunk.super_patches[block[0] as usize..block[1] as usize] {
+                if survives(group, instance) {
+                    let patches = group.first as usize..(group.first + group.count) as usize;
+                    let patches = &chunk.patches[patches];
+                    let surviving = patches.iter().filter(|patch| survives(patch, instance));
+                    edges += surviving.map(|patch| u64::from(patch.count)).sum::<u64>();
+                }
+            }
+            all += workgroups(edges);
+        }
+    }
+    [all, borderline]
 }
 
 /// As many mesh workgroups as survivors' edges fill, as many primitives as contour edges.
