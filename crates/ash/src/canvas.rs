@@ -4,9 +4,11 @@ use ash::vk;
 use drypoint_shaders::{Arguments, DepthOrder, INK, LINES, Raster, View};
 use glam::Vec2;
 
+use crate::barrier::Use;
 use crate::binding::{Layout, Resource, Set};
-use crate::commands::{Commands, Fate, Use};
+use crate::commands::Commands;
 use crate::depth_pass::{DepthPass, Found, Surface};
+use crate::execution::Fate;
 use crate::look::Look;
 use crate::memory::Image;
 use crate::mesh_pass::MeshPass;

@@ -2,11 +2,13 @@
 
 use std::any::Any;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
+use crate::barrier::Use;
 use crate::binding::Set;
+use crate::execution::{Download, Fate, Recorded};
 use crate::memory::{Buffer, Image};
 use crate::pipeline::Pipeline;
 use crate::queries::{Counting, Pool};
@@ -22,132 +24,6 @@ pub struct Commands {
     /// What is being counted, and where.
     counting: Option<(Counting, Vec<Arc<Pool>>)>,
     fate: Fate,
-}
-
-/// Whether commands came to nothing: what they were to write holds anything then.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Fate {
-    is_abandoned: Arc<AtomicBool>,
-}
-
-impl Fate {
-    /// The commands will never execute.
-    pub(crate) fn abandon(&self) {
-        self.is_abandoned.store(true, Ordering::Release);
-    }
-
-    /// Fails if it is so, for what was made in them.
-    pub(crate) fn check(&self, what: &'static str) -> Result<(), Error> {
-        if self.is_abandoned.load(Ordering::Acquire) {
-            Err(Error::Abandoned { what })
-        } else {
-            Ok(())
-        }
-    }
-}
-
-/// What a command buffer uses: to be kept until it has executed, or will not be any more.
-#[derive(Debug)]
-#[must_use = "what the commands use goes with it"]
-pub struct Recorded {
-    id: u64,
-    _kept: Vec<Arc<dyn Any + Send + Sync>>,
-}
-
-/// That commands have executed: what they were to download can be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Executed {
-    id: u64,
-}
-
-/// What was copied to where the processor sees it, once the commands have executed.
-#[derive(Debug)]
-pub(crate) struct Download {
-    what: &'static str,
-    id: u64,
-    buffer: Buffer,
-}
-
-/// What touches memory, for barriers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Use {
-    stages: vk::PipelineStageFlags,
-    access: vk::AccessFlags,
-}
-
-/// Reads of whatever draws: of vertices and in shaders.
-const DRAWING: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
-    vk::PipelineStageFlags::VERTEX_INPUT.as_raw()
-        | vk::PipelineStageFlags::VERTEX_SHADER.as_raw()
-        | vk::PipelineStageFlags::TASK_SHADER_EXT.as_raw()
-        | vk::PipelineStageFlags::MESH_SHADER_EXT.as_raw()
-        | vk::PipelineStageFlags::FRAGMENT_SHADER.as_raw(),
-);
-
-impl Use {
-    const fn new(stages: vk::PipelineStageFlags, access: vk::AccessFlags) -> Self {
-        Self { stages, access }
-    }
-
-    pub(crate) const fn and(self, other: Self) -> Self {
-        Self {
-            stages: vk::PipelineStageFlags::from_raw(self.stages.as_raw() | other.stages.as_raw()),
-            access: vk::AccessFlags::from_raw(self.access.as_raw() | other.access.as_raw()),
-        }
-    }
-
-    /// Whatever came before.
-    pub(crate) const ANYTHING: Self =
-        Self::new(vk::PipelineStageFlags::ALL_COMMANDS, vk::AccessFlags::MEMORY_WRITE);
-    pub(crate) const COPIED_TO: Self =
-        Self::new(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-    pub(crate) const COPIED_FROM: Self =
-        Self::new(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_READ);
-    pub(crate) const WRITTEN_BY_COMPUTE: Self =
-        Self::new(vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
-    pub(crate) const READ_BY_COMPUTE: Self = Self::new(
-        vk::PipelineStageFlags::COMPUTE_SHADER,
-        vk::AccessFlags::from_raw(
-            vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::UNIFORM_READ.as_raw(),
-        ),
-    );
-    pub(crate) const USED_BY_COMPUTE: Self = Self::WRITTEN_BY_COMPUTE.and(Self::READ_BY_COMPUTE);
-    pub(crate) const READ_BY_DRAWING: Self = Self::new(
-        DRAWING,
-        vk::AccessFlags::from_raw(
-            vk::AccessFlags::SHADER_READ.as_raw()
-                | vk::AccessFlags::UNIFORM_READ.as_raw()
-                | vk::AccessFlags::INDEX_READ.as_raw()
-                | vk::AccessFlags::VERTEX_ATTRIBUTE_READ.as_raw(),
-        ),
-    );
-    pub(crate) const WRITTEN_BY_DRAWING: Self = Self::new(DRAWING, vk::AccessFlags::SHADER_WRITE);
-    pub(crate) const USED_BY_DRAWING: Self = Self::READ_BY_DRAWING.and(Self::WRITTEN_BY_DRAWING);
-    pub(crate) const READ_AS_ARGUMENTS: Self =
-        Self::new(vk::PipelineStageFlags::DRAW_INDIRECT, vk::AccessFlags::INDIRECT_COMMAND_READ);
-    pub(crate) const SAMPLED: Self =
-        Self::new(vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::SHADER_READ);
-    pub(crate) const DRAWN_TO: Self = Self::new(
-        vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
-        vk::AccessFlags::from_raw(
-            vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw()
-                | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
-        ),
-    );
-    pub(crate) const DEPTH_TESTED: Self = Self::new(
-        vk::PipelineStageFlags::from_raw(
-            vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw()
-                | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
-        ),
-        vk::AccessFlags::from_raw(
-            vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
-                | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
-        ),
-    );
-    const READ_BY_HOST: Self = Self::new(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
-    /// Shaders and arguments of all kinds.
-    pub(crate) const USED_BY_SHADERS: Self =
-        Self::USED_BY_COMPUTE.and(Self::USED_BY_DRAWING).and(Self::READ_AS_ARGUMENTS);
 }
 
 /// Most bytes of one update, a limit of Vulkan.
@@ -414,32 +290,5 @@ impl Commands {
     pub(crate) fn dispatch(&mut self, [x, y]: [u32; 2]) {
         // SAFETY: a compute pipeline is bound with all that it needs.
         unsafe { self.device.raw().cmd_dispatch(self.raw, x, y, 1) };
-    }
-}
-
-impl Recorded {
-    /// That what was recorded has executed.
-    ///
-    /// # Safety
-    /// The command buffer was submitted once and has executed, as a fence or waiting for the device has told.
-    pub unsafe fn assume_executed(self) -> Executed {
-        Executed { id: self.id }
-    }
-}
-
-impl Executed {
-    /// Whether it is that of the commands of this number.
-    pub(crate) fn is_of(&self, id: Option<u64>) -> bool {
-        id == Some(self.id)
-    }
-}
-
-impl Download {
-    /// What was copied.
-    pub(crate) fn read(&self, executed: &Executed) -> Result<&[u8], Error> {
-        if !executed.is_of(Some(self.id)) {
-            return Err(Error::OtherCommands { what: self.what });
-        }
-        Ok(self.buffer.bytes())
     }
 }

@@ -6,8 +6,10 @@ use drypoint_shaders::{
     Totals, Work,
 };
 
+use crate::barrier::Use;
 use crate::binding::{Resource, Set};
-use crate::commands::{Commands, Download, Executed, Use};
+use crate::commands::Commands;
+use crate::execution::{Download, Executed};
 use crate::extractor::Extractor;
 use crate::input::Input;
 use crate::memory::Buffer;

@@ -8,9 +8,11 @@ use drypoint_mesh::Mesh;
 use drypoint_shaders::{DEPTH, DepthOrder, Part};
 use glam::Mat4;
 
+use crate::barrier::Use;
 use crate::binding::{Resource, Set};
-use crate::commands::{Commands, Fate, Use};
+use crate::commands::Commands;
 use crate::contours::Contours;
+use crate::execution::Fate;
 use crate::input::Input;
 use crate::look::{compare, uniform};
 use crate::memory::Buffer;

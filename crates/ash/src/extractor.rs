@@ -4,7 +4,8 @@ use drypoint_shaders::{
     BRUTE_FORCE, PATCHES, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS, prelude,
 };
 
-use crate::commands::{Commands, Use};
+use crate::barrier::Use;
+use crate::commands::Commands;
 use crate::contours::Contours;
 use crate::pipeline::Pipeline;
 use crate::{Device, Error, layouts};

@@ -4,7 +4,8 @@ use ash::vk::BufferUsageFlags as Usage;
 use drypoint_shaders::{Method, Placement, Transform, Work, place};
 use glam::Vec4;
 
-use crate::commands::{Commands, Use};
+use crate::barrier::Use;
+use crate::commands::Commands;
 use crate::memory::Buffer;
 use crate::model::Model;
 use crate::{Device, Error};

@@ -67,6 +67,7 @@
 //! ```
 #![allow(unsafe_code, reason = "handles of Vulkan are raw; each block says what it relies on")]
 
+mod barrier;
 mod binding;
 mod canvas;
 mod commands;
@@ -74,9 +75,11 @@ mod contours;
 mod depth_pass;
 mod device;
 mod error;
+mod execution;
 mod extractor;
 mod gpu;
 mod input;
+mod instance;
 mod layouts;
 mod line_pass;
 mod look;
@@ -92,12 +95,13 @@ mod rendering;
 mod shader;
 
 pub use canvas::{Canvas, Subject};
-pub use commands::{Commands, Executed, Recorded};
+pub use commands::Commands;
 pub use contours::{Capacity, Contours, CountedByCompute, FoundByCompute};
 pub use depth_pass::{Found, Surface};
 pub use device::{Device, Limits, OptionalFeatures, REQUIRED_EXTENSIONS, RequiredFeatures};
 pub use drypoint_shaders::{DepthOrder, LineStyle, Method, Placement, Segment, Statistics, View};
 pub use error::Error;
+pub use execution::{Executed, Recorded};
 pub use extractor::Extractor;
 pub use gpu::{Gpu, GpuOptions, Listener};
 pub use line_pass::LinePass;

@@ -5,8 +5,9 @@ use ash::vk::BufferUsageFlags as Usage;
 use drypoint_shaders::{DepthOrder, LineStyle, Stroke};
 use glam::Mat4;
 
+use crate::barrier::Use;
 use crate::binding::{Layout, Resource, Set};
-use crate::commands::{Commands, Use};
+use crate::commands::Commands;
 use crate::memory::Buffer;
 use crate::{Device, Error};
 

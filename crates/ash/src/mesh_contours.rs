@@ -6,9 +6,11 @@ use drypoint_shaders::{
 };
 
 use crate::Error;
+use crate::barrier::Use;
 use crate::binding::{Resource, Set};
-use crate::commands::{Commands, Download, Executed, Use};
+use crate::commands::Commands;
 use crate::contours::{Capacity, segments};
+use crate::execution::{Download, Executed};
 use crate::input::Input;
 use crate::layouts;
 use crate::memory::Buffer;

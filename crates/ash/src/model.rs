@@ -7,8 +7,10 @@ use drypoint_fusion::PatchSet;
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_shaders::{BLOCK_PATCHES, Chunk, Content, EdgePlanes, Frame, Group, MAX_PIECE};
 
+use crate::barrier::Use;
 use crate::binding::{Layout, Resource, Set};
-use crate::commands::{Commands, Fate, Use};
+use crate::commands::Commands;
+use crate::execution::Fate;
 use crate::memory::Buffer;
 use crate::{Device, Error, layouts};
 

@@ -4,8 +4,10 @@ use ash::vk;
 use drypoint_shaders::divide_by_alpha;
 
 use crate::Error;
+use crate::barrier::Use;
 use crate::canvas::check_size;
-use crate::commands::{Commands, Download, Executed, Fate, Use};
+use crate::commands::Commands;
+use crate::execution::{Download, Executed, Fate};
 use crate::memory::Image;
 use crate::rendering::{Rendering, Targets};
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use crate::commands::{Commands, Executed};
+use crate::commands::Commands;
+use crate::execution::Executed;
 use crate::{Device, Error};
 
 /// What [`Queries`] count.
