@@ -12,7 +12,9 @@ fn append(is_hit: bool, edge: u32, placement: u32, lane: Lane) {
     let hit_count = subgroupAdd(u32(is_hit));
     let place = subgroupExclusiveAdd(u32(is_hit));
     var first = 0u;
-    if lane.in_subgroup == 0u && hit_count > 0u {
+    // One of the active lanes.
+    let is_elected = lane.in_subgroup == subgroupBroadcastFirst(lane.in_subgroup);
+    if is_elected && hit_count > 0u {
         first = counters.first_segment + atomicAdd(&counters.segments, hit_count);
     }
     first = subgroupBroadcastFirst(first);

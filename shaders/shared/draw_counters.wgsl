@@ -20,4 +20,9 @@ struct Lane {
     @builtin(subgroup_invocation_id) in_subgroup: u32,
 }
 
+// One of the active lanes of each subgroup.
+fn is_elected(lane: Lane) -> bool {
+    return lane.in_subgroup == subgroupBroadcastFirst(lane.in_subgroup);
+}
+
 @group(1) @binding(1) var<storage, read_write> counters: DrawCounters;

@@ -54,7 +54,7 @@ fn test_patch(is_patch: bool, index: u32, instance: u32, lane: Lane) {
     let before = subgroupExclusiveAdd(share);
     let all = subgroupAdd(share);
     var base = 0u;
-    if lane.in_subgroup == 0u && all > 0u {
+    if is_elected(lane) && all > 0u {
         base = atomicAdd(&taken, all);
     }
     base = subgroupBroadcastFirst(base) + before;

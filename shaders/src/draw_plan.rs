@@ -68,14 +68,11 @@ impl DrawPlan<'_> {
         }
     }
 
-    /// Most draws that fewer instances could need, by any method.
-    pub fn most_draws(&self) -> usize {
-        let count = |method| {
-            let mut count = 0;
-            Self { method, ..*self }.draws(&mut |_| count += 1);
-            count
-        };
-        [Method::BruteForce, Method::Patches].map(count).into_iter().max().unwrap_or(0)
+    /// Number of draws. Fewer instances never need more.
+    pub fn count(&self) -> usize {
+        let mut count = 0;
+        self.draws(&mut |_| count += 1);
+        count
     }
 
     fn cut(

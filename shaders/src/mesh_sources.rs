@@ -65,7 +65,10 @@ pub const BLOCK_PATCHES: u32 = 128;
 pub struct MeshShape {
     /// Lanes of a task workgroup, at most 128.
     pub task_width: u32,
-    /// Lanes of a mesh workgroup, each for an edge: it emits up to [`Emitted::vertices`] times as many vertices.
+    /// Lanes of a mesh workgroup.
+    pub mesh_width: u32,
+    /// Edges of a mesh workgroup, a multiple of its lanes: it emits up to [`Emitted::vertices`] times as many
+    /// vertices.
     pub edges_per_workgroup: u32,
     /// Whether segments are written to a buffer.
     pub records: bool,
@@ -78,11 +81,12 @@ impl MeshShape {
             Culling::Nothing | Culling::Patches => self.task_width,
             Culling::SuperPatches => BLOCK_PATCHES,
         };
-        let Self { task_width, edges_per_workgroup, records } = self;
+        let Self { task_width, mesh_width, edges_per_workgroup, records } = self;
         format!(
             "enable wgpu_mesh_shader;\n\
              const TASK_WIDTH: u32 = {task_width}u;\n\
              const SLOTS: u32 = {slots}u;\n\
+             const MESH_WIDTH: u32 = {mesh_width}u;\n\
              const EDGES_PER_WORKGROUP: u32 = {edges_per_workgroup}u;\n\
              const RECORDS: bool = {records};\n"
         )

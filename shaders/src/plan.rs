@@ -122,7 +122,8 @@ impl Plan<'_> {
             for first_instance in (0..self.instances).step_by(step as usize) {
                 let instance_count = step.min(self.instances - first_instance);
                 let workgroups = blocks * instance_count;
-                let row = self.limits.row.min(workgroups);
+                // No more rows than needed, and as even as can be.
+                let rows = workgroups.div_ceil(self.limits.row);
                 let work = Work {
                     first_item,
                     item_count,
@@ -133,7 +134,7 @@ impl Plan<'_> {
                     part,
                     segment_capacity: self.segment_capacity,
                 };
-                let grid = [row, workgroups.div_ceil(row)];
+                let grid = [workgroups.div_ceil(rows), rows];
                 visit(Dispatch { stage, chunk, work, grid });
             }
         }

@@ -57,11 +57,13 @@ fn meshes() -> impl Iterator<Item = String> {
     let cullings = [Culling::Nothing, Culling::Patches, Culling::SuperPatches].into_iter();
     let kinds = cullings.flat_map(|c| [Emitted::Lines, Emitted::Strokes].map(|e| (c, e)));
     kinds.flat_map(|(culling, emitted)| {
-        [[32, 32], [64, 64], [128, 16]].map(|[task_width, edges_per_workgroup]| {
-            let records = task_width == 64;
-            let shape = MeshShape { task_width, edges_per_workgroup, records };
-            shape.prelude(culling) + mesh_source(culling, emitted)
-        })
+        [[32, 32, 32], [64, 32, 64], [128, 16, 16]].map(
+            |[task_width, mesh_width, edges_per_workgroup]| {
+                let records = task_width == 64;
+                let shape = MeshShape { task_width, mesh_width, edges_per_workgroup, records };
+                shape.prelude(culling) + mesh_source(culling, emitted)
+            },
+        )
     })
 }
 

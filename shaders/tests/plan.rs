@@ -1,5 +1,7 @@
 //! Work is cut so that each edge, patch or block of each instance is done once, within the limits.
 
+#![allow(clippy::cast_possible_truncation, reason = "the meshes are small")]
+
 use std::ops::ControlFlow;
 
 use drypoint_fusion::{FusionParams, Levels, fuse};
@@ -9,7 +11,8 @@ use drypoint_shaders::{
     MeshShape, Method,
 };
 
-const SHAPE: MeshShape = MeshShape { task_width: 8, edges_per_workgroup: 16, records: false };
+const SHAPE: MeshShape =
+    MeshShape { task_width: 8, mesh_width: 8, edges_per_workgroup: 16, records: false };
 
 /// A model of two parts, in chunks of few edges.
 fn content(levels: Levels) -> Content {
@@ -77,7 +80,10 @@ fn check(plan: &DrawPlan<'_>, what: &str) {
     let limits = plan.limits;
     let mut draws = Vec::new();
     plan.draws(&mut |draw| draws.push(draw));
-    assert!(draws.len() <= plan.most_draws(), "{what}");
+    assert_eq!(draws.len(), plan.count(), "{what}");
+    for instances in 0..plan.instances {
+        assert!(DrawPlan { instances, ..*plan }.count() <= plan.count(), "{what}");
+    }
     let mut expected = Vec::new();
     let mut found = Vec::new();
     for draw in &draws {

@@ -171,12 +171,13 @@ impl<'a> Subject<'a> {
                 self.compare(views, &segments, &format!("mesh shaders, {method:?}"));
                 let drawn = found.statistics(&executed).expect("it was counted");
                 let counts = queries.read(&executed).expect("it was counted");
-                let lanes = u64::from(pass.edges_per_workgroup());
+                let lanes = u64::from(pass.mesh_width());
                 // As many workgroups as were needed, and as many lines as there are contour edges.
                 assert_eq!(counts.mesh_invocations, drawn.mesh_workgroups * lanes, "{}", self.name);
                 assert_eq!(counts.primitives, drawn.found.segments, "{}", self.name);
                 assert_eq!(counts.primitives, segments.len() as u64, "{}", self.name);
                 if method == Method::Patches {
+                    self.check_launched(pass, set, &drawn, placements.len());
                     all.found.edges_tested += drawn.found.edges_tested;
                     all.survivors += drawn.survivors;
                     all.mesh_workgroups += drawn.mesh_workgroups;
@@ -185,6 +186,30 @@ impl<'a> Subject<'a> {
             }
         }
         all
+    }
+
+    /// No more mesh workgroups than survivors, unless patches have more edges than a workgroup; and no more than
+    /// are full, but for the last one of each task workgroup.
+    fn check_launched(
+        &self,
+        pass: &MeshPass,
+        set: &PatchSet,
+        drawn: &MeshStatistics,
+        instances: usize,
+    ) {
+        let share = u64::from(pass.edges_per_workgroup());
+        let (launched, edges) = (drawn.mesh_workgroups, drawn.found.edges_tested);
+        let largest = set.patches().iter().map(|patch| patch.edges().len()).max().unwrap_or(0);
+        // Those of the procedural shape of many leaves have hundreds.
+        if largest as u64 <= share || !self.name.starts_with("book") {
+            assert!(launched <= drawn.survivors, "{}: {launched} mesh workgroups", self.name);
+        }
+        let lanes = u64::from(pass.task_width());
+        // Patches, and super-patches that are fewer, are in pieces.
+        let pieces = Content::new(&[set]).patches.len() as u64 * instances as u64;
+        let task_workgroups = pieces.div_ceil(lanes);
+        assert!(launched >= edges.div_ceil(share), "{}", self.name);
+        assert!(launched <= edges / share + task_workgroups, "{}", self.name);
     }
 
     /// Number of edges within the margin that differ, which are listed.

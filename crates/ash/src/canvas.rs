@@ -11,7 +11,7 @@ use crate::depth_pass::{DepthPass, Found, Surface};
 use crate::execution::Fate;
 use crate::look::Look;
 use crate::memory::Image;
-use crate::mesh_pass::MeshPass;
+use crate::mesh_pass::{Attached, MeshPass};
 use crate::pipeline::{Blending, Drawing, Formats, Pipeline};
 use crate::rendering::{Rendering, Targets};
 use crate::shader::Shader;
@@ -64,7 +64,8 @@ impl Canvas {
     /// Of width and height in pixels, to be inked into color attachments of `format`.
     ///
     /// # Errors
-    /// [`Error::PictureSize`] if the device allows no image of that size, or if it has not enough memory.
+    /// [`Error::PictureSize`] if the device allows no image of that size, [`Error::Format`] if it cannot draw to such
+    /// images, or if it has not enough memory.
     pub fn new(
         commands: &mut Commands,
         size: [u32; 2],
@@ -72,6 +73,7 @@ impl Canvas {
         format: vk::Format,
     ) -> Result<Self, Error> {
         let device = &commands.device().clone();
+        Attached { color: format, depth: Some((DEPTH, order)) }.check(device, true)?;
         let look = Look::new(device, &layouts::stroke(device)?)?;
         Ok(Self {
             order,
@@ -103,7 +105,9 @@ impl Canvas {
     /// `view` is for whoever renders.
     ///
     /// # Errors
-    /// If something is of another device.
+    /// If something is of another device, or was made in commands that were never executed; if contours were not
+    /// prepared in these commands, or made for a pass with other workgroups; if a surface was made for other contours;
+    /// or while shaders are counted. Nothing else is recorded then that could be inked.
     pub fn cover(
         &self,
         commands: &mut Commands,
@@ -121,24 +125,26 @@ impl Canvas {
         let to_read = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
         commands.transition(depth, (Use::SAMPLED, undefined), (Use::DEPTH_TESTED, to_test));
         let tested = Some((depth, DEPTH, self.order));
-        {
+        let drawn = {
             let mut rendering =
                 commands.render(&Targets { color: None, depth: tested, size: *size });
-            for Subject { contours, surface } in subjects {
-                self.depth_pass.record(&mut rendering, surface, *contours)?;
-            }
-        }
+            subjects.iter().try_for_each(|Subject { contours, surface }| {
+                self.depth_pass.record(&mut rendering, surface, *contours)
+            })
+        };
         commands.transition(depth, (Use::DEPTH_TESTED, to_test), (Use::SAMPLED, to_read));
+        drawn?;
         commands.transition(coverage, (Use::SAMPLED, undefined), (Use::DRAWN_TO, to_draw));
         let color = Some((coverage, COVERAGE, [0.0; 4]));
-        {
+        let drawn = {
             let mut rendering = commands.render(&Targets { color, depth: None, size: *size });
-            for Subject { contours, .. } in subjects {
-                self.draw_strokes(&mut rendering, *contours)?;
-            }
-        }
+            let mut draw =
+                |subject: &Subject<'_>| self.draw_strokes(&mut rendering, subject.contours);
+            subjects.iter().try_for_each(&mut draw)
+        };
+        // Whatever was drawn, the image is for reading again.
         commands.transition(coverage, (Use::DRAWN_TO, to_draw), (Use::SAMPLED, to_read));
-        Ok(())
+        drawn
     }
 
     fn draw_strokes(
@@ -164,7 +170,8 @@ impl Canvas {
     /// nothing else, by what [`Canvas::cover`] drew. Colors are multiplied by their alpha.
     ///
     /// # Errors
-    /// If rendering is to something else, or of another device.
+    /// If rendering is to something else, or of another device; if the canvas was made in commands that were never
+    /// executed; or while mesh shaders are counted.
     pub fn ink(&self, rendering: &mut Rendering<'_>) -> Result<(), Error> {
         rendering.check(self.mesh_pass.device(), "the canvas")?;
         self.images.fate.check("the canvas")?;

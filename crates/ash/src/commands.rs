@@ -23,7 +23,10 @@ pub struct Commands {
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// What is being counted, and where.
     counting: Option<(Counting, Vec<Arc<Pool>>)>,
+    /// Whether rendering was begun by us, and not ended: its value may have been forgotten.
+    pub(crate) is_rendering: bool,
     fate: Fate,
+    is_finished: bool,
 }
 
 /// Most bytes of one update, a limit of Vulkan.
@@ -33,12 +36,12 @@ impl Commands {
     /// Records into the caller's command buffer.
     ///
     /// # Safety
-    /// `raw` is of `device` and of a queue family with graphics and compute; it is being recorded, by this thread
-    /// alone, and is no secondary one. What is recorded by other means meanwhile leaves no rendering open at
-    /// calls on this value. It executes no more than once for each recording, after all that was recorded before
-    /// it, on one queue or with semaphores between; if it never does, what was made and prepared in it is not used
-    /// any more. [`Commands::finish`] is called, after an error too, and what it gives is kept until the command
-    /// buffer has executed, or will not be any more.
+    /// `raw` is of `device` and of a queue family with graphics and compute, the same for all that is made from
+    /// `device`; it is being recorded, by this thread alone, and is no secondary one. What is recorded by other means
+    /// meanwhile leaves no rendering open and no query active at calls on this value. It executes no more than once
+    /// for each recording, after all that was recorded before it, on one queue or with semaphores between; if it never
+    /// does, what was made and prepared in it is not used any more. [`Commands::finish`] is called, after an error
+    /// too, and what it gives is kept until the command buffer has executed, or will not be any more.
     pub unsafe fn from_raw(device: &Device, raw: vk::CommandBuffer) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -48,14 +51,27 @@ impl Commands {
             id,
             kept: Vec::new(),
             counting: None,
+            is_rendering: false,
             fate: Fate::default(),
+            is_finished: false,
         }
     }
 
-    /// Ends recording through this value; the command buffer may be recorded on by other means.
+    /// Ends recording through this value; the command buffer may be recorded on by other means. Pipelines, descriptor
+    /// sets, viewport and scissor are others then.
     pub fn finish(mut self) -> Recorded {
+        self.end_rendering();
         self.end_counting();
-        Recorded { id: self.id, _kept: self.kept }
+        self.is_finished = true;
+        Recorded { id: self.id, _kept: std::mem::take(&mut self.kept) }
+    }
+
+    /// Ends rendering that was begun here, if it is still open.
+    pub(crate) fn end_rendering(&mut self) {
+        if std::mem::take(&mut self.is_rendering) {
+            // SAFETY: it was begun in these commands.
+            unsafe { self.device.raw().cmd_end_rendering(self.raw) };
+        }
     }
 
     /// The device.
@@ -78,15 +94,13 @@ impl Commands {
         self.id
     }
 
-    /// Begins the only query of each pool.
+    /// Begins the only query of each pool, after what was counted before.
     pub(crate) fn count<'a>(
         &mut self,
         counting: Counting,
         pools: impl Iterator<Item = &'a Arc<Pool>>,
-    ) -> Result<(), Error> {
-        if self.counting.is_some() {
-            return Err(Error::Counting { what: "more queries" });
-        }
+    ) {
+        self.end_counting();
         let pools: Vec<_> = pools.cloned().collect();
         for pool in &pools {
             self.keep(pool.clone());
@@ -99,11 +113,11 @@ impl Commands {
             }
         }
         self.counting = Some((counting, pools));
-        Ok(())
     }
 
     /// Ends what was begun, if anything was.
     pub(crate) fn end_counting(&mut self) {
+        self.end_rendering();
         for pool in self.counting.take().into_iter().flat_map(|(_, pools)| pools) {
             // SAFETY: it was begun in these commands, and not ended.
             unsafe { self.device.raw().cmd_end_query(self.raw, pool.raw(), 0) };
@@ -125,6 +139,7 @@ impl Commands {
 
     /// All that is done before and of `before` is done before what is of `after`.
     pub(crate) fn barrier(&mut self, before: Use, after: Use) {
+        self.end_rendering();
         let memory = vk::MemoryBarrier::default()
             .src_access_mask(before.access)
             .dst_access_mask(after.access);
@@ -150,6 +165,7 @@ impl Commands {
         (before, from): (Use, vk::ImageLayout),
         (after, to): (Use, vk::ImageLayout),
     ) {
+        self.end_rendering();
         self.keep(image.kept());
         let barrier = vk::ImageMemoryBarrier::default()
             .src_access_mask(before.access)
@@ -176,6 +192,7 @@ impl Commands {
 
     /// Writes `bytes`, a multiple of 4, to the beginning of a buffer. They lie in the command buffer until then.
     pub(crate) fn update(&mut self, buffer: &Buffer, bytes: &[u8]) {
+        self.end_rendering();
         assert!(bytes.len() as u64 <= buffer.size(), "there is room for what is written");
         self.keep(buffer.kept());
         for (piece, bytes) in (0..).zip(bytes.chunks(UPDATE)) {
@@ -187,6 +204,7 @@ impl Commands {
 
     /// Makes all of a buffer 0.
     pub(crate) fn clear(&mut self, buffer: &Buffer) {
+        self.end_rendering();
         self.keep(buffer.kept());
         // SAFETY: the buffer is kept.
         unsafe {
@@ -213,6 +231,7 @@ impl Commands {
 
     /// Copies the first `size` bytes.
     fn copy(&mut self, from: &Buffer, to: &Buffer, size: u64) {
+        self.end_rendering();
         assert!(size <= from.size().min(to.size()), "it is there, and there is room for it");
         self.keep(from.kept());
         self.keep(to.kept());
@@ -239,6 +258,7 @@ impl Commands {
         what: &'static str,
         image: &Image,
     ) -> Result<Download, Error> {
+        self.end_rendering();
         let [width, height] = image.size();
         let size = 4 * u64::from(width) * u64::from(height);
         let target = Buffer::to_download(&self.device, what, size)?;
@@ -288,7 +308,16 @@ impl Commands {
     }
 
     pub(crate) fn dispatch(&mut self, [x, y]: [u32; 2]) {
+        self.end_rendering();
         // SAFETY: a compute pipeline is bound with all that it needs.
         unsafe { self.device.raw().cmd_dispatch(self.raw, x, y, 1) };
+    }
+}
+
+impl Drop for Commands {
+    fn drop(&mut self) {
+        if !self.is_finished {
+            self.fate.abandon();
+        }
     }
 }

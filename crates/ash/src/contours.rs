@@ -47,7 +47,8 @@ impl Contours {
     /// Room for the contours of `model`.
     ///
     /// # Errors
-    /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer.
+    /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer; if the model is of
+    /// another device, or was made in commands that were never executed.
     pub fn new(extractor: &Extractor, model: &Model, capacity: Capacity) -> Result<Self, Error> {
         let device = extractor.device();
         model.check(device)?;
@@ -134,7 +135,7 @@ impl Contours {
     /// has room for all that there is room for here.
     ///
     /// # Errors
-    /// If there is not enough memory.
+    /// If there is not enough memory, or nothing was prepared, or not on this device.
     pub fn download(&self, commands: &mut Commands) -> Result<FoundByCompute, Error> {
         Ok(FoundByCompute {
             counted: self.download_statistics(commands)?,
@@ -145,9 +146,11 @@ impl Contours {
     /// The same of statistics alone: some bytes, for each frame.
     ///
     /// # Errors
-    /// If there is not enough memory.
+    /// If there is not enough memory, or nothing was prepared, or not on this device.
     pub fn download_statistics(&self, commands: &mut Commands) -> Result<CountedByCompute, Error> {
-        commands.check(self.model.device(), "contours")?;
+        self.model.check(commands.device())?;
+        self.input.check_once()?;
+        commands.barrier(Use::WRITTEN_BY_COMPUTE.and(Use::COPIED_TO), Use::COPIED_FROM);
         let totals = commands.download("totals", &self.totals)?;
         Ok(CountedByCompute { totals, capacity: self.capacity.segments })
     }

@@ -85,7 +85,7 @@ impl DepthPass {
     ) -> Result<(), Error> {
         surface.fate.check("the surface")?;
         found.input().check(rendering.commands())?;
-        if surface.transforms.raw() != found.input().transforms.raw() {
+        if !surface.transforms.is(&found.input().transforms) {
             return Err(Error::OtherContours);
         }
         let instances = found.input().count() / surface.model.part_count();

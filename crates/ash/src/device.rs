@@ -17,6 +17,9 @@ pub struct Device {
 struct Shared {
     raw: ash::Device,
     mesh_shader: ext::mesh_shader::Device,
+    /// What the device was made from, to ask about formats.
+    instance: ash::Instance,
+    physical_device: vk::PhysicalDevice,
     properties: Properties,
     features: OptionalFeatures,
     /// `None` while the device goes.
@@ -69,6 +72,13 @@ pub(crate) struct MeshProperties {
     pub(crate) mesh_grid: [u32; 2],
 }
 
+/// Edges of all instances that one draw or dispatch tests at most: far less than counters of 32 bits hold, and than
+/// what takes so long that a system takes the GPU away.
+pub(crate) const MOST_TESTS: u32 = 1 << 28;
+
+/// Storage buffers that a mesh shader sees.
+const STORAGE_BUFFERS: u32 = 11;
+
 /// Device extensions that must be enabled.
 pub const REQUIRED_EXTENSIONS: [&CStr; 1] = [ext::mesh_shader::NAME];
 
@@ -119,7 +129,8 @@ impl Device {
     ///
     /// # Safety
     /// `raw` was made from `physical_device` and `instance` with [`REQUIRED_EXTENSIONS`] and
-    /// [`RequiredFeatures`] enabled, and with those of `features` that are set, and outlives this value, its clones, and all that is made from them.
+    /// [`RequiredFeatures`] enabled, and with those of `features` that are set, and outlives this value, its clones, and
+    /// all that is made from them; so does the instance.
     /// Whenever something that was made from it is dropped, the device does not execute commands that use it,
     /// and no other thread is destroying it.
     pub unsafe fn from_raw(
@@ -160,6 +171,8 @@ impl Device {
         Ok(Self {
             shared: Arc::new(Shared {
                 mesh_shader: ext::mesh_shader::Device::new(instance, raw),
+                instance: instance.clone(),
+                physical_device,
                 raw: raw.clone(),
                 properties,
                 features,
@@ -183,6 +196,20 @@ impl Device {
     /// Whether a processor does the work: its times say nothing about GPUs.
     pub fn is_software(&self) -> bool {
         self.shared.properties.is_software
+    }
+
+    /// Fails if images of that format cannot be used so.
+    pub(crate) fn check_format(
+        &self,
+        (format, wanted): (vk::Format, vk::FormatFeatureFlags),
+        what: &'static str,
+    ) -> Result<(), Error> {
+        let Shared { instance, physical_device, .. } = &*self.shared;
+        // SAFETY: the device was made from both, which outlive it.
+        let found =
+            unsafe { instance.get_physical_device_format_properties(*physical_device, format) };
+        let is_there = found.optimal_tiling_features.contains(wanted);
+        if is_there { Ok(()) } else { Err(Error::Format { format, what }) }
     }
 
     pub(crate) fn mesh_shader(&self) -> &ext::mesh_shader::Device {
@@ -293,6 +320,9 @@ impl Properties {
         ];
         if let Some((_, what)) = flags.into_iter().find(|(flag, _)| *flag == vk::FALSE) {
             return lacks(what);
+        }
+        if basic.limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
+            return lacks("11 storage buffers in a shader");
         }
         let stages = vk::ShaderStageFlags::TASK_EXT
             | vk::ShaderStageFlags::MESH_EXT

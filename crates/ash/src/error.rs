@@ -107,6 +107,51 @@ pub enum Error {
         /// What.
         what: &'static str,
     },
+    /// A pass of mesh shaders was to have more lanes or edges in a workgroup than the device or this crate allows.
+    #[error("{asked} lanes were asked for {what}, 1 to {most} are allowed")]
+    Lanes {
+        /// What they are of.
+        what: &'static str,
+        /// How many were asked for.
+        asked: u32,
+        /// How many are allowed.
+        most: u32,
+    },
+    /// Each round of a mesh workgroup has an edge for every lane.
+    #[error("{edges} edges of a mesh workgroup are not a multiple of its {lanes} lanes")]
+    UnevenLanes {
+        /// Edges that were asked for.
+        edges: u32,
+        /// Lanes of the workgroup.
+        lanes: u32,
+    },
+    /// What is rendered to has other formats than the pipeline was made for.
+    #[error(
+        "{what} is made for {expected:?} and {expected_depth:?} for depth, rendering is to {color:?} and {depth:?}"
+    )]
+    OtherAttachments {
+        /// What is recorded.
+        what: &'static str,
+        /// Color that it is made for.
+        expected: Option<vk::Format>,
+        /// Depth that it is made for.
+        expected_depth: Option<vk::Format>,
+        /// Color that is rendered to.
+        color: Option<vk::Format>,
+        /// Depth that is rendered to.
+        depth: Option<vk::Format>,
+    },
+    /// The device cannot draw to images of that format as it would have to.
+    #[error("the Vulkan device cannot use the format {format:?} for {what}")]
+    Format {
+        /// The format.
+        format: vk::Format,
+        /// For what.
+        what: &'static str,
+    },
+    /// What a call was given changed places with that of another.
+    #[error("the commands were exchanged for others while they were recorded")]
+    Exchanged,
     /// A surface is made from the meshes that the model's parts were made from.
     #[error("the meshes of the surface are not those that the model was made from")]
     OtherMeshes,

@@ -7,6 +7,7 @@ use drypoint_shaders::{
 use crate::barrier::Use;
 use crate::commands::Commands;
 use crate::contours::Contours;
+use crate::device::MOST_TESTS;
 use crate::pipeline::Pipeline;
 use crate::{Device, Error, layouts};
 
@@ -44,7 +45,7 @@ impl Extractor {
                 width: WIDTH,
                 row: limits.max_compute_work_group_count[0]
                     .min(limits.max_compute_work_group_count[1]),
-                edges: 1 << 28,
+                edges: MOST_TESTS,
             },
             brute_force: found(BRUTE_FORCE, "brute_force")?,
             patches: found(PATCHES, "patches_and_edges")?,
@@ -63,10 +64,10 @@ impl Extractor {
         self.limits
     }
 
-    /// Records what `contours` was prepared for. Outside of rendering.
+    /// Records what `contours` was prepared for, once. Outside of rendering.
     ///
     /// # Errors
-    /// If the commands are of another device.
+    /// If the commands are of another device, or not those that the contours were prepared in.
     pub fn record(&self, commands: &mut Commands, contours: &Contours) -> Result<(), Error> {
         commands.check(&self.device, "the extractor")?;
         contours.input.check(commands)?;

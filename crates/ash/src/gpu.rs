@@ -147,7 +147,8 @@ impl Gpu {
         self.queue
     }
 
-    /// Records commands, executes them, and waits until they have executed.
+    /// Records commands, executes them, and waits until they have executed. One call after the other: it must not
+    /// be called from `record`, where it would wait for itself.
     ///
     /// # Errors
     /// That of `record`, when nothing is executed; or if the device is lost.
@@ -172,6 +173,12 @@ impl Gpu {
         let made =
             begun.map_err(|error| Error::of(what, error)).and_then(|()| record(&mut commands));
         let fate = commands.fate().clone();
+        if commands.raw() != buffers[0] {
+            // Those of another call: they are neither finished nor dropped here, and ours are lost.
+            fate.abandon();
+            std::mem::forget(commands);
+            return Err(Error::Exchanged);
+        }
         let recorded = commands.finish();
         let made = made.and_then(|made| self.execute(buffers[0]).map(|()| made));
         if made.is_err() {

@@ -6,6 +6,7 @@ use glam::Vec4;
 
 use crate::barrier::Use;
 use crate::commands::Commands;
+use crate::execution::Fate;
 use crate::memory::Buffer;
 use crate::model::Model;
 use crate::{Device, Error};
@@ -23,8 +24,8 @@ pub(crate) struct Input {
     /// As it is being written.
     placed: (Vec<Vec4>, Vec<Transform>),
     bytes: Vec<u8>,
-    /// The commands that it is recorded in, if it is.
-    id: Option<u64>,
+    /// The commands that it is recorded in, if it is, and what becomes of them.
+    recorded: Option<(u64, Fate)>,
 }
 
 impl Input {
@@ -38,7 +39,10 @@ impl Input {
         let alignment = device.limits().min_uniform_buffer_offset_alignment.max(16);
         let alignment = usize::try_from(alignment).unwrap_or(256);
         let stride = size_of::<Work>().next_multiple_of(alignment);
-        let size = (stride * pieces.max(1)) as u64;
+        let (size, limit) = ((stride * pieces.max(1)) as u64, u64::from(u32::MAX));
+        if size > limit {
+            return Err(Error::TooLarge { what: "the work of a frame", bytes: size, limit });
+        }
         Ok(Self {
             viewpoints: buffer(size_of::<Vec4>())?,
             transforms: buffer(size_of::<Transform>())?,
@@ -52,7 +56,7 @@ impl Input {
             capacity: placements,
             placed: (Vec::new(), Vec::new()),
             bytes: Vec::new(),
-            id: None,
+            recorded: None,
         })
     }
 
@@ -63,7 +67,7 @@ impl Input {
         placements: &[Placement],
         method: Method,
     ) -> Result<(), Error> {
-        self.id = None;
+        self.recorded = None;
         let (viewpoints, transforms) = &mut self.placed;
         viewpoints.clear();
         transforms.clear();
@@ -101,12 +105,19 @@ impl Input {
         commands.update(&self.viewpoints, bytemuck::cast_slice(&self.placed.0));
         commands.update(&self.transforms, bytemuck::cast_slice(&self.placed.1));
         commands.update(&self.work, &self.bytes);
-        self.id = Some(commands.id());
+        self.recorded = Some((commands.id(), commands.fate().clone()));
     }
 
     /// Fails if it is not recorded in these commands.
     pub(crate) fn check(&self, commands: &Commands) -> Result<(), Error> {
-        if self.id == Some(commands.id()) { Ok(()) } else { Err(Error::Unprepared) }
+        let id = self.recorded.as_ref().map(|(id, _)| *id);
+        if id == Some(commands.id()) { Ok(()) } else { Err(Error::Unprepared) }
+    }
+
+    /// Fails if it was recorded nowhere, or in commands that came to nothing.
+    pub(crate) fn check_once(&self) -> Result<(), Error> {
+        let (_, fate) = self.recorded.as_ref().ok_or(Error::Unprepared)?;
+        fate.check("what contours hold")
     }
 
     /// Where a piece of work begins.

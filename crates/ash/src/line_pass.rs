@@ -27,9 +27,10 @@ impl LinePass {
     /// For drawing to such attachments.
     ///
     /// # Errors
-    /// If the driver refuses a shader.
+    /// If the device cannot draw to such attachments, or refuses a shader.
     pub fn new(device: &Device, attached: &Attached) -> Result<Self, Error> {
         let what = "lines";
+        attached.check(device, true)?;
         let shader = Shader::new(device, what, THIN_LINES)?;
         let stroke = layouts::stroke(device)?;
         let drawing = Drawing {
@@ -71,7 +72,8 @@ impl LinePass {
     /// Draws what `contours` holds by then.
     ///
     /// # Errors
-    /// If rendering is to other attachments than the pass was made for, or of another device.
+    /// If rendering is to other attachments than the pass was made for, or of another device; if the contours were not
+    /// prepared in these commands; or while mesh shaders are counted.
     pub fn record(&self, rendering: &mut Rendering<'_>, contours: &Contours) -> Result<(), Error> {
         rendering.check(&self.device, "the pass of lines")?;
         contours.input.check(rendering.commands())?;

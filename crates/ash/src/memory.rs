@@ -116,6 +116,11 @@ impl Buffer {
         Ok(Self { shared })
     }
 
+    /// Whether both are the same.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared)
+    }
+
     pub(crate) fn raw(&self) -> vk::Buffer {
         self.shared.raw
     }
@@ -159,8 +164,7 @@ impl Image {
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
-        // SAFETY: formats and usages are those that Vulkan demands of every device; the caller has checked the
-        // size.
+        // SAFETY: the caller has checked the size, and the format where not every device must have it for that use.
         let raw = unsafe { device.raw().create_image(&info, None) };
         let raw = raw.map_err(|error| Error::of(what, error))?;
         let aspect = if usage.contains(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT) {

@@ -40,7 +40,8 @@ impl MeshContours {
     /// Room for instances of `model`; and for that many segments, if `pass` records them.
     ///
     /// # Errors
-    /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer.
+    /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer; if the model is of
+    /// another device, or was made in commands that were never executed.
     pub fn new(pass: &MeshPass, model: &Model, capacity: Capacity) -> Result<Self, Error> {
         let device = pass.device();
         model.check(device)?;
@@ -52,7 +53,8 @@ impl MeshContours {
         let segment_capacity = if pass.records() { capacity.segments } else { 0 };
         let capacity = Capacity { segments: segment_capacity, ..capacity };
         let instances = capacity.placements / model.part_count().max(1);
-        let draws = plan(limits, model, Method::Patches, (instances, capacity)).most_draws().max(1);
+        let count = |method| plan(limits, model, method, (instances, capacity)).count();
+        let draws = count(Method::BruteForce).max(count(Method::Patches)).max(1);
         let input = Input::new(device, capacity.placements, draws)?;
         let size = size_of::<DrawCounters>() as u64;
         let stride =
@@ -126,10 +128,11 @@ impl MeshContours {
     /// it was drawn.
     ///
     /// # Errors
-    /// If there is not enough memory.
+    /// If there is not enough memory, or nothing was prepared, or not on this device.
     pub fn download(&self, commands: &mut Commands) -> Result<FoundByMesh, Error> {
-        commands.check(self.model.device(), "contours")?;
-        commands.barrier(Use::WRITTEN_BY_DRAWING, Use::COPIED_FROM);
+        self.model.check(commands.device())?;
+        self.input.check_once()?;
+        commands.barrier(Use::WRITTEN_BY_DRAWING.and(Use::COPIED_TO), Use::COPIED_FROM);
         Ok(FoundByMesh {
             counters: commands.download("counters", &self.counters)?,
             stride: self.stride as usize,

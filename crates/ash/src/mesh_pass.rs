@@ -6,12 +6,12 @@ use glam::Mat4;
 
 use crate::binding::{Layout, Set};
 use crate::commands::Commands;
-use crate::device::MeshProperties;
+use crate::device::{MOST_TESTS, MeshProperties};
 use crate::look::{Look, compare};
 use crate::mesh_contours::MeshContours;
 use crate::pipeline::{Blending, Drawing, Formats, Pipeline};
 use crate::rendering::{Rendering, Targets};
-use crate::shader::Shader;
+use crate::shader::{CUSTOM_ENTRY, Shader};
 use crate::{Device, Error, layouts};
 
 /// What a [`MeshPass`] draws, and how.
@@ -22,8 +22,12 @@ pub struct MeshOptions<'a> {
     /// Lanes of a task workgroup, each for a patch: at most 128 and what the device allows. What it
     /// prefers, if `None`.
     pub task_width: Option<u32>,
-    /// Lanes of a mesh workgroup, each for an edge: at most 64 and what the device allows. What it
-    /// prefers, if `None`.
+    /// Lanes of a mesh workgroup: at most 128 and what the device allows. What it prefers, and 64 at most, if
+    /// `None`.
+    pub mesh_width: Option<u32>,
+    /// Edges of a mesh workgroup, a multiple of its lanes, which take an edge each in every round: at most 128, and
+    /// half of that for strokes. About 64, if `None`: fewer are workgroups that find nothing, more are room for vertices
+    /// that few of them need.
     pub edges_per_workgroup: Option<u32>,
     /// Whether [`Segment`](crate::Segment)s are written to a buffer too.
     pub records: bool,
@@ -37,9 +41,10 @@ pub enum MeshOutput<'a> {
     /// Lines one pixel wide, in the color of the line style.
     Lines(Attached),
     /// The same, drawn by a fragment shader of one's own: WGSL after the line `enable wgpu_mesh_shader;`, with
-    /// an entry point `fragment` that binds nothing. It may read `@per_primitive @location(0) edge: u32` and
+    /// an entry point `fragment` that binds nothing and gives `@location(0)`: numbers of the kind that the color
+    /// attachment holds. It may read `@per_primitive @location(0) edge: u32` and
     /// `@per_primitive @location(1) edge_class: u32`, both `@interpolate(flat)`: the id of the edge and its
-    /// [`EdgeClass`](drypoint_mesh::EdgeClass) as a number.
+    /// [`EdgeClass`](drypoint_mesh::EdgeClass) as a number; and built-in values.
     Custom(Attached, &'a str),
 }
 
@@ -52,11 +57,28 @@ pub struct Attached {
     pub depth: Option<(vk::Format, drypoint_shaders::DepthOrder)>,
 }
 
+impl Attached {
+    /// Fails if the device cannot draw to it, blended or not.
+    pub(crate) fn check(&self, device: &Device, is_blended: bool) -> Result<(), Error> {
+        let color = if is_blended {
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND
+        } else {
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT
+        };
+        device.check_format((self.color, color), "a color attachment")?;
+        self.depth.map_or(Ok(()), |(depth, _)| {
+            let tested = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+            device.check_format((depth, tested), "a depth attachment")
+        })
+    }
+}
+
 impl Default for MeshOptions<'_> {
     fn default() -> Self {
         Self {
             output: MeshOutput::Nothing,
             task_width: None,
+            mesh_width: None,
             edges_per_workgroup: None,
             records: true,
         }
@@ -73,12 +95,14 @@ pub struct MeshPass {
     look: Look,
 }
 
-/// Lines in a fragment shader of the caller's own begin so.
-const CUSTOM_ENTRY: &str = "fragment";
-
-/// Most lanes for which the payload, or what is emitted, has room everywhere.
+/// Most lanes for which the payload has room everywhere.
 const MOST_TASK_LANES: u32 = 128;
-const MOST_MESH_LANES: u32 = 64;
+
+/// Most edges for which there is room everywhere for what is emitted, as lines.
+const MOST_EDGES: u32 = 128;
+
+/// Edges of a mesh workgroup, and lanes at most, where nobody chooses.
+const USUAL_EDGES: u32 = 64;
 
 /// What is compiled to a [`MeshPass`].
 pub(crate) struct MeshParts<'a> {
@@ -110,7 +134,9 @@ impl MeshPass {
         let shape = shape(device, Emitted::Lines, options)?;
         let style = layouts::stroke(device)?;
         let custom = match options.output {
-            MeshOutput::Custom(_, source) => Some(Shader::custom(device, source)?),
+            MeshOutput::Custom(attached, source) => {
+                Some(Shader::custom(device, source, attached.color)?)
+            }
             MeshOutput::Nothing | MeshOutput::Lines(_) => None,
         };
         let (fragment, attached) = match (&options.output, &custom) {
@@ -120,6 +146,9 @@ impl MeshPass {
             (MeshOutput::Lines(attached), _) => (Fragment::Entry("line_color"), Some(attached)),
             _ => (Fragment::None, None),
         };
+        if let Some(attached) = attached {
+            attached.check(device, custom.is_none())?;
+        }
         let depth = attached.and_then(|attached| attached.depth);
         let formats = Formats {
             color: attached.map(|attached| attached.color),
@@ -166,7 +195,12 @@ impl MeshPass {
         self.shape.task_width
     }
 
-    /// Lanes of a mesh workgroup, each for an edge.
+    /// Lanes of a mesh workgroup.
+    pub fn mesh_width(&self) -> u32 {
+        self.shape.mesh_width
+    }
+
+    /// Edges of a mesh workgroup.
     pub fn edges_per_workgroup(&self) -> u32 {
         self.shape.edges_per_workgroup
     }
@@ -192,10 +226,11 @@ impl MeshPass {
         Ok(())
     }
 
-    /// Draws what `contours` was prepared for.
+    /// Draws what `contours` was prepared for. Recorded again, it is drawn, counted and written down again.
     ///
     /// # Errors
-    /// If rendering is to other attachments than the pass was made for, or of another device.
+    /// If rendering is to other attachments than the pass was made for, or of another device; if the contours were not
+    /// prepared in these commands, or made for a pass with other workgroups; or while compute shaders are counted.
     pub fn record(
         &self,
         rendering: &mut Rendering<'_>,
@@ -207,7 +242,7 @@ impl MeshPass {
     /// Finds contour edges and draws nothing: for a pass of [`MeshOutput::Nothing`]. Outside of rendering.
     ///
     /// # Errors
-    /// If the pass draws something, or the commands are of another device.
+    /// If the pass draws something, and as [`MeshPass::record`].
     pub fn extract(&self, commands: &mut Commands, contours: &MeshContours) -> Result<(), Error> {
         let nothing = Targets { color: None, depth: None, size: [1, 1] };
         self.record(&mut commands.render(&nothing), contours)
@@ -260,7 +295,7 @@ impl MeshLimits {
             Method::BruteForce => self.mesh_grid,
             Method::Patches => self.task_grid,
         };
-        DrawLimits { shape: self.shape, row, workgroups, edges: 1 << 28 }
+        DrawLimits { shape: self.shape, row, workgroups, edges: MOST_TESTS }
     }
 }
 
@@ -314,26 +349,28 @@ impl MeshParts<'_> {
 
 fn shape(device: &Device, emitted: Emitted, options: &MeshOptions<'_>) -> Result<MeshShape, Error> {
     let mesh = device.mesh_properties();
-    let by_output =
-        (mesh.vertices / emitted.vertices()).min(mesh.primitives / emitted.primitives());
-    let [task_most, task_preferred] = mesh.task_width.map(|width| width.min(MOST_TASK_LANES));
-    let [mesh_most, mesh_preferred] =
-        mesh.mesh_width.map(|width| width.min(MOST_MESH_LANES).min(by_output));
-    let choose = |wanted: Option<u32>, [most, preferred]: [u32; 2], what| {
-        let width = wanted.unwrap_or(preferred.max(1));
-        if (1..=most).contains(&width) {
-            return Ok(width);
+    let most_edges = (mesh.vertices / emitted.vertices())
+        .min(mesh.primitives / emitted.primitives())
+        .min(MOST_EDGES * Emitted::Lines.vertices() / emitted.vertices());
+    let choose = |asked: Option<u32>, usual: u32, most: u32, what| {
+        let asked = asked.unwrap_or(usual.clamp(1, most));
+        if (1..=most).contains(&asked) {
+            Ok(asked)
+        } else {
+            Err(Error::Lanes { what, asked, most })
         }
-        let reason = format!("{width} lanes were asked for, 1 to {most} are allowed");
-        Err(Error::Refused { what, reason })
     };
-    Ok(MeshShape {
-        task_width: choose(options.task_width, [task_most, task_preferred], "task workgroups")?,
-        edges_per_workgroup: choose(
-            options.edges_per_workgroup,
-            [mesh_most, mesh_preferred],
-            "mesh workgroups",
-        )?,
-        records: options.records,
-    })
+    let [most, preferred] = mesh.task_width.map(|width| width.min(MOST_TASK_LANES));
+    let task_width = choose(options.task_width, preferred, most, "a task workgroup")?;
+    let [most, preferred] = mesh.mesh_width.map(|width| width.min(most_edges));
+    let usual = preferred.min(USUAL_EDGES);
+    let mesh_width = choose(options.mesh_width, usual, most, "a mesh workgroup")?;
+    let rounds = (USUAL_EDGES.min(most_edges) / mesh_width).max(1);
+    let (usual, what) = (rounds * mesh_width, "edges of a mesh workgroup");
+    let edges_per_workgroup = choose(options.edges_per_workgroup, usual, most_edges, what)?;
+    if !edges_per_workgroup.is_multiple_of(mesh_width) {
+        return Err(Error::UnevenLanes { edges: edges_per_workgroup, lanes: mesh_width });
+    }
+    let records = options.records;
+    Ok(MeshShape { task_width, mesh_width, edges_per_workgroup, records })
 }

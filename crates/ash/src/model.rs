@@ -10,6 +10,7 @@ use drypoint_shaders::{BLOCK_PATCHES, Chunk, Content, EdgePlanes, Frame, Group, 
 use crate::barrier::Use;
 use crate::binding::{Layout, Resource, Set};
 use crate::commands::Commands;
+use crate::device::MOST_TESTS;
 use crate::execution::Fate;
 use crate::memory::Buffer;
 use crate::{Device, Error, layouts};
@@ -39,9 +40,6 @@ struct Uploaded {
     edge_count: u64,
     has_patches: bool,
 }
-
-/// Most edges of a chunk: so many, times instances, are tested by one draw or dispatch.
-const MOST_EDGES: u32 = 1 << 28;
 
 impl Model {
     /// Records the upload of a patch set for each rigid part. Takes about as long as reading the patch sets,
@@ -80,7 +78,7 @@ impl Model {
         let device = commands.device().clone();
         let limit = u64::from(device.limits().max_storage_buffer_range);
         let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
-        let most_edges = fitting(size_of::<EdgePlanes>()).clamp(MAX_PIECE, MOST_EDGES);
+        let most_edges = fitting(size_of::<EdgePlanes>()).clamp(MAX_PIECE, MOST_TESTS);
         let chunks = content.chunks(most_edges, fitting(size_of::<Group>()));
         let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER;
         let positions = bytemuck::cast_slice(&content.positions);

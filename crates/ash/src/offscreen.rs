@@ -72,8 +72,9 @@ impl Offscreen {
         self.fate.check("the picture")?;
         commands.check(self.color.device(), "the picture")?;
         commands.transition(&self.color, (Use::DRAWN_TO, TO_DRAW), (Use::COPIED_FROM, TO_COPY));
-        let download = commands.download_image("a picture", &self.color)?;
+        let download = commands.download_image("a picture", &self.color);
         commands.transition(&self.color, (Use::COPIED_FROM, TO_COPY), (Use::DRAWN_TO, TO_DRAW));
+        let download = download?;
         Ok(Pixels { download })
     }
 }

@@ -33,7 +33,7 @@ impl Picture {
     /// Draws `subjects` in place of what was drawn before, and a copy of that.
     ///
     /// # Errors
-    /// If something is of another device, or there is not enough memory for the copy.
+    /// As [`Canvas::cover`], or if there is not enough memory for the copy.
     pub fn draw(
         &self,
         commands: &mut Commands,

@@ -121,12 +121,17 @@ impl Queries {
     /// If the commands are of another device, or something is counted in them already, or there is not enough memory.
     pub fn begin(&mut self, commands: &mut Commands) -> Result<(), Error> {
         commands.check(&self.device, "queries")?;
+        if commands.counting().is_some() {
+            return Err(Error::Counting { what: "more queries" });
+        }
+        // What was counted before is not asked for any more.
+        self.id = None;
         if Arc::strong_count(&self.invocations) > 1 {
             let fresh = Self::new(&self.device, self.counting)?;
             (self.invocations, self.primitives) = (fresh.invocations, fresh.primitives);
         }
         let pools = [Some(&self.invocations), self.primitives.as_ref()];
-        commands.count(self.counting, pools.into_iter().flatten())?;
+        commands.count(self.counting, pools.into_iter().flatten());
         (self.id, self.is_running) = (Some(commands.id()), true);
         self.timer.as_mut().map_or(Ok(()), |timer| timer.begin(commands))
     }
@@ -198,6 +203,7 @@ impl Timer {
     /// If the commands are of another device.
     pub fn begin(&mut self, commands: &mut Commands) -> Result<(), Error> {
         commands.check(&self.device, "a timer")?;
+        self.id = None;
         if Arc::strong_count(&self.pool) > 1 {
             self.pool = Self::new(&self.device)?.pool;
         }

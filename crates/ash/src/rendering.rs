@@ -54,6 +54,7 @@ impl Commands {
     }
 
     pub(crate) fn render(&mut self, targets: &Targets<'_>) -> Rendering<'_> {
+        self.end_rendering();
         let info = |image: &Image, layout, value| {
             vk::RenderingAttachmentInfo::default()
                 .image_view(image.view())
@@ -86,6 +87,7 @@ impl Commands {
         }
         // SAFETY: no rendering is open; the images are kept, and in the layouts that are named.
         unsafe { self.device().raw().cmd_begin_rendering(self.raw(), &begin) };
+        self.is_rendering = true;
         let formats = Formats {
             color: targets.color.map(|(_, format, _)| format),
             depth: targets.depth.map(|(_, format, _)| format),
@@ -134,12 +136,14 @@ impl Rendering<'_> {
         sets: &[(&Set, &[u32])],
     ) -> Result<(), Error> {
         if pipeline.formats() != self.formats {
-            let reason = format!(
-                "it is made for {:?}, rendering is to {:?}",
-                pipeline.formats(),
-                self.formats
-            );
-            return Err(Error::Refused { what, reason });
+            let (expected, given) = (pipeline.formats(), self.formats);
+            return Err(Error::OtherAttachments {
+                what,
+                expected: expected.color,
+                expected_depth: expected.depth,
+                color: given.color,
+                depth: given.depth,
+            });
         }
         let other = if pipeline.is_mesh() { Counting::Compute } else { Counting::MeshShaders };
         if self.commands.counting() == Some(other) {
@@ -194,8 +198,7 @@ impl Rendering<'_> {
 impl Drop for Rendering<'_> {
     fn drop(&mut self) {
         if self.is_ours {
-            // SAFETY: it was begun when this was made.
-            unsafe { self.device().raw().cmd_end_rendering(self.commands.raw()) };
+            self.commands.end_rendering();
         }
     }
 }

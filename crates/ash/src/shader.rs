@@ -21,20 +21,16 @@ impl<'a> Shader<'a> {
         Self::of(device, what, &words)
     }
 
-    /// A fragment shader of the caller's own, which binds nothing.
-    pub(crate) fn custom(device: &'a Device, source: &str) -> Result<Self, Error> {
+    /// A fragment shader of the caller's own, for a color attachment of `format`.
+    pub(crate) fn custom(
+        device: &'a Device,
+        source: &str,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
         let what = "a fragment shader of one's own";
         let (module, words) = compile(what, source, BoundsCheckPolicy::Restrict)?;
-        let invalid = |reason: &str| Err(Error::Shader { what, reason: reason.to_owned() });
-        let is_wanted = |entry: &naga::EntryPoint| {
-            entry.name == "fragment" && entry.stage == naga::ShaderStage::Fragment
-        };
-        if !module.entry_points.iter().any(is_wanted) {
-            return invalid("it has no fragment entry point `fragment`");
-        }
-        if module.global_variables.iter().any(|(_, variable)| variable.binding.is_some()) {
-            return invalid("it binds something");
-        }
+        check_custom(&module, format)
+            .map_err(|reason| Error::Shader { what, reason: reason.to_owned() })?;
         Self::of(device, what, &words)
     }
 
@@ -86,10 +82,75 @@ fn compile(
             image_load: BoundsCheckPolicy::Restrict,
             binding_array: checks,
         },
-        force_loop_bounding: false,
+        // Our own loops end.
+        force_loop_bounding: checks != BoundsCheckPolicy::Unchecked,
         ..spv::Options::default()
     };
     let words = spv::write_vec(&module, &info, &options, None)
         .map_err(|error| invalid(error.to_string()))?;
     Ok((module, words))
+}
+
+/// Entry point of a fragment shader of the caller's own.
+pub(crate) const CUSTOM_ENTRY: &str = "fragment";
+
+/// Whether such a shader reads no more than mesh shaders emit, and gives what `format` holds.
+fn check_custom(module: &naga::Module, format: vk::Format) -> Result<(), &'static str> {
+    let is_wanted = |entry: &&naga::EntryPoint| {
+        entry.name == CUSTOM_ENTRY && entry.stage == naga::ShaderStage::Fragment
+    };
+    let entry = module.entry_points.iter().find(is_wanted);
+    let function = &entry.ok_or("it has no fragment entry point `fragment`")?.function;
+    if module.global_variables.iter().any(|(_, variable)| variable.binding.is_some()) {
+        return Err("it binds something");
+    }
+    let arguments = function.arguments.iter();
+    let read = arguments.flat_map(|a| members(module, a.ty, a.binding.as_ref()));
+    let is_emitted = |(ty, binding): &(&naga::TypeInner, &naga::Binding)| match binding {
+        naga::Binding::BuiltIn(_) => true,
+        naga::Binding::Location { location, per_primitive, .. } => {
+            *location < 2 && *per_primitive && **ty == naga::TypeInner::Scalar(naga::Scalar::U32)
+        }
+    };
+    if !read.into_iter().all(|member| is_emitted(&member)) {
+        return Err("it reads something else than the id and the class of an edge");
+    }
+    let result = function.result.as_ref().ok_or("it gives nothing")?;
+    let name = format!("{format:?}");
+    let kind = match () {
+        () if name.contains("UINT") => naga::ScalarKind::Uint,
+        () if name.contains("SINT") => naga::ScalarKind::Sint,
+        () => naga::ScalarKind::Float,
+    };
+    let is_held = |(ty, binding): &(&naga::TypeInner, &naga::Binding)| match binding {
+        naga::Binding::BuiltIn(_) => true,
+        naga::Binding::Location { location, .. } => {
+            *location == 0 && ty.scalar_kind() == Some(kind)
+        }
+    };
+    let given = members(module, result.ty, result.binding.as_ref());
+    let has_color = given.iter().any(|(_, b)| matches!(b, naga::Binding::Location { .. }));
+    if !has_color || !given.iter().all(is_held) {
+        return Err("it gives something else than what the color attachment holds");
+    }
+    Ok(())
+}
+
+/// What an argument or a result consists of, with where each is bound.
+fn members<'a>(
+    module: &'a naga::Module,
+    ty: naga::Handle<naga::Type>,
+    binding: Option<&'a naga::Binding>,
+) -> Vec<(&'a naga::TypeInner, &'a naga::Binding)> {
+    let inner = &module.types[ty].inner;
+    match (binding, inner) {
+        (Some(binding), _) => vec![(inner, binding)],
+        (None, naga::TypeInner::Struct { members, .. }) => {
+            let bound = members.iter().filter_map(|member| {
+                Some((&module.types[member.ty].inner, member.binding.as_ref()?))
+            });
+            bound.collect()
+        }
+        (None, _) => Vec::new(),
+    }
 }

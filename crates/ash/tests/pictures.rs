@@ -186,9 +186,16 @@ fn fragment_shaders_that_bind_or_are_not_there_are_refused() {
     let binding = "@group(0) @binding(0) var<uniform> color: vec4f;
         @fragment fn fragment() -> @location(0) vec4f { return color; }";
     let other = "@fragment fn other() -> @location(0) vec4f { return vec4f(); }";
-    for (source, why) in
-        [(binding, "binds"), (other, "no fragment entry point"), ("fn", "expected")]
-    {
+    let far =
+        "@fragment fn fragment(@location(7) x: f32) -> @location(0) vec4f { return vec4f(x); }";
+    let whole = "@fragment fn fragment() -> @location(0) vec4u { return vec4u(); }";
+    for (source, why) in [
+        (binding, "binds"),
+        (other, "no fragment entry point"),
+        ("fn", "expected"),
+        (far, "reads something else"),
+        (whole, "gives something else"),
+    ] {
         let output = MeshOutput::Custom(ATTACHED, source);
         let options = MeshOptions { output, ..MeshOptions::default() };
         let error = MeshPass::new(gpu.device(), &options).expect_err("it is refused");
@@ -264,8 +271,8 @@ fn what_does_not_fit_together_is_refused() {
         prepared.prepare(commands, &[placement], Method::Patches)?;
         lines.extract(commands, &prepared)
     });
-    assert!(matches!(error.expect_err("it draws"), Error::Refused { .. }));
-    let narrow = MeshOptions { edges_per_workgroup: Some(16), ..MeshOptions::default() };
+    assert!(matches!(error.expect_err("it draws"), Error::OtherAttachments { .. }));
+    let narrow = MeshOptions { mesh_width: Some(16), ..MeshOptions::default() };
     let narrow = MeshPass::new(gpu.device(), &narrow).expect("shaders compile");
     let error = gpu.run(|commands| {
         prepared.prepare(commands, &[placement], Method::Patches)?;
@@ -284,7 +291,12 @@ fn what_does_not_fit_together_is_refused() {
     let error = Contours::new(&Extractor::new(other.device()).unwrap(), &model, CAPACITY);
     assert!(matches!(error.expect_err("another device"), Error::OtherDevice { .. }));
     let ((), executed) = gpu.run(|_| Ok(())).expect("nothing is done");
-    let (found, _) = gpu.run(|commands| prepared.download(commands)).expect("it is copied");
+    let (found, _) = gpu
+        .run(|commands| {
+            prepared.prepare(commands, &[placement], Method::Patches)?;
+            prepared.download(commands)
+        })
+        .expect("it is copied");
     let error = found.statistics(&executed).expect_err("other commands");
     assert!(matches!(error, Error::OtherCommands { .. }));
     support::expect_silence();
@@ -386,5 +398,64 @@ fn a_canvas_takes_other_sizes() {
     let error = gpu.run(|commands| canvas.resize(commands, [0, 1])).expect_err("no pixels");
     assert!(matches!(error, Error::PictureSize { .. }));
     assert!(draw(&canvas, SIZE) == fresh, "it stays as it was");
+    support::expect_silence();
+}
+
+#[test]
+fn formats_that_cannot_be_drawn_to_are_refused() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let depth = (vk::Format::R8_UNORM, DepthOrder::Standard);
+    for attached in [
+        Attached { color: vk::Format::R32_UINT, depth: None },
+        Attached { color: vk::Format::BC1_RGB_UNORM_BLOCK, depth: None },
+        Attached { depth: Some(depth), ..ATTACHED },
+    ] {
+        let error = LinePass::new(gpu.device(), &attached).expect_err("it cannot be blended");
+        assert!(matches!(error, Error::Format { .. }), "{error}");
+        let options = MeshOptions { output: MeshOutput::Lines(attached), ..MeshOptions::default() };
+        let error = MeshPass::new(gpu.device(), &options).expect_err("it cannot be blended");
+        assert!(matches!(error, Error::Format { .. }), "{error}");
+    }
+    // Whole numbers are for shaders that give such.
+    let whole = Attached { color: vk::Format::R32_UINT, depth: None };
+    let source = "@fragment fn fragment() -> @location(0) vec4u { return vec4u(1u); }";
+    let options =
+        MeshOptions { output: MeshOutput::Custom(whole, source), ..MeshOptions::default() };
+    MeshPass::new(gpu.device(), &options).expect("it is drawn to as it is");
+    let format = vk::Format::R32_UINT;
+    let error = gpu.run(|commands| Canvas::new(commands, SIZE, DepthOrder::Standard, format));
+    assert!(matches!(error.expect_err("it cannot be blended"), Error::Format { .. }));
+    support::expect_silence();
+}
+
+#[test]
+fn what_failed_or_was_forgotten_leaves_images_as_they_have_to_be() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let mesh = shapes::icosphere(100);
+    let model = model(&gpu, &patches(&mesh, Levels::One));
+    let (placements, scene_to_clip) = scene();
+    let view = View { scene_to_clip, background: [1.0; 4], lines: LineStyle::default() };
+    let narrow = MeshOptions { mesh_width: Some(16), ..MeshOptions::default() };
+    let narrow = MeshPass::new(gpu.device(), &narrow).expect("shaders compile");
+    let made = gpu.run(|commands| {
+        let canvas = Canvas::new(commands, SIZE, DepthOrder::Standard, Offscreen::FORMAT)?;
+        let offscreen = Offscreen::new(commands, SIZE)?;
+        let mut meshed = MeshContours::new(&narrow, &model, CAPACITY)?;
+        let surface = Surface::new(commands, &meshed, &[&mesh])?;
+        meshed.prepare(commands, &placements, Method::Patches)?;
+        let subject = Subject { contours: (&meshed).into(), surface: &surface };
+        assert_eq!(canvas.cover(commands, &view, &[subject]), Err(Error::OtherPass));
+        canvas.ink(&mut offscreen.render(commands, [1.0; 4])?)?;
+        // Rendering that nobody ends.
+        std::mem::forget(offscreen.render(commands, [1.0; 4])?);
+        offscreen.download(commands)
+    });
+    made.expect("it is recorded");
     support::expect_silence();
 }

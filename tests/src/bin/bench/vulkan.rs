@@ -190,11 +190,16 @@ impl<'a> Frames<'a> {
         let say = |error: Error| error.to_string();
         let (compute, picture) = self.count_compute(subject).map_err(say)?;
         let (mesh, same) = self.count_mesh(subject).map_err(say)?;
-        let lanes = u64::from(self.mesh_pass.edges_per_workgroup());
+        let lanes = u64::from(self.mesh_pass.mesh_width());
+        let launched = mesh.mesh_invocations / lanes;
         if mesh.mesh_invocations != lanes * mesh.mesh_workgroups {
             let needed = mesh.mesh_workgroups;
-            let launched = mesh.mesh_invocations / lanes;
-            return Err(format!("{launched} mesh workgroups were launched, {needed} are needed"));
+            return Err(format!(
+                "{launched} mesh workgroups were launched, {needed} were asked for"
+            ));
+        }
+        if subject.method == Method::Patches && launched > mesh.survivors {
+            return Err(format!("{launched} mesh workgroups for {} survivors", mesh.survivors));
         }
         for counts in [compute, mesh] {
             if counts.primitives != counts.lines {
