@@ -12,8 +12,9 @@
 //!   ([`EdgePlanes::doubt`](drypoint_shaders::EdgePlanes::doubt)).
 //! - **Counted.** [`FoundByMesh::statistics`] tells how many mesh workgroups were launched and how many of them
 //!   were idle; [`Queries`] ask the device itself.
-//! - **Safe.** Whoever has a Vulkan device and a command buffer says so in `unsafe` calls,
-//!   [`Device::from_raw`] and [`Commands::from_raw`], which state what they rely on. All else is checked: what
+//! - **Safe.** Whoever has a Vulkan device, a command buffer and rendering of their own says so in `unsafe` calls,
+//!   [`Device::from_raw`], [`Commands::from_raw`], [`Commands::in_rendering`] and [`Recorded::assume_executed`], which
+//!   state what they rely on. All else is checked: what
 //!   commands use lives until they have executed ([`Recorded`]), and what they download can be read only then
 //!   ([`Executed`]).
 //! - **No panics.** No driver, no mesh shaders, no memory, a lost device: an [`Error`].

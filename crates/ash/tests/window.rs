@@ -73,7 +73,10 @@ fn the_viewer_shows_the_same_by_mesh_shaders_and_by_compute_shaders() -> Result<
     let is_smaller = |picture: &Picture| *picture != corner && picture.is_drawing();
     session.look_for("mesh-viewer-small", half, &is_smaller);
     session.press(V)?;
-    session.wait_for("mesh shaders again", &|title| workgroups(title) == Some([launched, idle]));
+    session.wait_for("mesh shaders again", &|title| {
+        // Which edges share a workgroup, and so which is idle, may differ from frame to frame.
+        workgroups(title).is_some_and(|[again, _]| again == launched)
+    });
     session.resize(SIZE)?;
     session.look_for("mesh-viewer-large", SIZE, &|picture| *picture == lines);
 

@@ -53,8 +53,9 @@ impl CostModel {
     /// patches.
     pub const GPU: Self = Self { patch_test: 48.0 / 32.0, ..Self::PAPER };
 
-    /// A mesh shader workgroup per survivor, which emits at most 64 vertices and 126 primitives
-    /// (Tsiapkolis and Bénard, CGF 2024, §4.4).
+    /// For a mesh workgroup of its own for each survivor, which emits at most 64 vertices and 126 primitives
+    /// (Tsiapkolis and Bénard, CGF 2024, §4.4). `drypoint-ash` shares workgroups out among survivors and is
+    /// better off with [`CostModel::GPU`].
     pub const MESH_SHADER: Self =
         Self { block: 32, accepted_patch: 4.0, max_edges: 126, max_vertices: 64, ..Self::PAPER };
 

@@ -79,7 +79,7 @@ impl Swapchain {
         Ok(swapchain)
     }
 
-    /// Colors are given as the eye sees them: a format that does not convert them.
+    /// Colors are given as the eye sees them: a format that does not convert them, if there is one.
     fn choose_format(&self, family: u32) -> Result<vk::SurfaceFormatKHR, Box<dyn Error>> {
         let Self { surface_functions, physical, surface, .. } = self;
         // SAFETY: all are of the same instance.
