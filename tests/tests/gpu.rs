@@ -18,7 +18,7 @@ use drypoint_ash::{Counting, MeshContours, MeshOptions, MeshPass, MeshStatistics
 use drypoint_cpu::extract_patches;
 use drypoint_fusion::{FusionParams, Levels, PatchSet, fuse};
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint, contour_edges};
-use drypoint_shaders::{Content, EdgePlanes};
+use drypoint_shaders::{BLOCK_PATCHES, Content, EdgePlanes};
 use drypoint_tests::{meshes, viewpoints};
 use drypoint_wgpu::{Capacity, Contours, Extractor, Gpu, Method, Model, Placement, Segment};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
@@ -199,15 +199,21 @@ impl<'a> Subject<'a> {
     ) {
         let share = u64::from(pass.edges_per_workgroup());
         let (launched, edges) = (drawn.mesh_workgroups, drawn.found.edges_tested);
-        let largest = set.patches().iter().map(|patch| patch.edges().len()).max().unwrap_or(0);
-        // Those of the procedural shape of many leaves have hundreds.
-        if largest as u64 <= share || !self.name.starts_with("book") {
+        let content = Content::new(&[set]);
+        let largest = content.patches.iter().map(|patch| patch.count).max().unwrap_or(0);
+        // Of the procedural books, of hundreds of leaves, one piece fills several workgroups.
+        if u64::from(largest) <= share || !self.name.starts_with("book") {
             assert!(launched <= drawn.survivors, "{}: {launched} mesh workgroups", self.name);
         }
-        let lanes = u64::from(pass.task_width());
-        // Patches, and super-patches that are fewer, are in pieces.
-        let pieces = Content::new(&[set]).patches.len() as u64 * instances as u64;
-        let task_workgroups = pieces.div_ceil(lanes);
+        let blocks = content.chunks(u32::MAX, u32::MAX);
+        let blocks = blocks.first().map_or(0, |chunk| chunk.blocks(BLOCK_PATCHES).len());
+        let task_workgroups = match blocks.checked_sub(1) {
+            Some(blocks) => (blocks * instances) as u64,
+            None => {
+                let patches = (content.patches.len() * instances) as u64;
+                patches.div_ceil(u64::from(pass.task_width()))
+            }
+        };
         assert!(launched >= edges.div_ceil(share), "{}", self.name);
         assert!(launched <= edges / share + task_workgroups, "{}", self.name);
     }
