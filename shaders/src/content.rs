@@ -86,6 +86,9 @@ impl Content {
     }
 
     /// Of a mesh without patches, for brute force.
+    ///
+    /// # Panics
+    /// If `adjacency` is of another mesh, with more vertices.
     pub fn without_patches(mesh: &Mesh, adjacency: &MeshAdjacency, filter: EdgeFilter) -> Self {
         let mut content = Self::default();
         let edges = adjacency.edges(filter).map(|edge| ContentEdge::new(adjacency, edge));

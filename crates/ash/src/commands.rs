@@ -249,7 +249,7 @@ impl Commands {
         let target = Buffer::to_download(&self.device, what, buffer.size())?;
         self.copy(buffer, &target, buffer.size());
         self.barrier(Use::COPIED_TO, Use::READ_BY_HOST);
-        Ok(Download { what, id: self.id, buffer: target })
+        Ok(self.downloaded(what, target, buffer.size()))
     }
 
     /// Copies an image of 4 bytes a pixel, which is in the layout to be copied from.
@@ -282,7 +282,12 @@ impl Commands {
             );
         }
         self.barrier(Use::COPIED_TO, Use::READ_BY_HOST);
-        Ok(Download { what, id: self.id, buffer: target })
+        Ok(self.downloaded(what, target, size))
+    }
+
+    fn downloaded(&self, what: &'static str, buffer: Buffer, size: u64) -> Download {
+        let size = usize::try_from(size).expect("it lies in memory");
+        Download { what, id: self.id, buffer, size }
     }
 
     /// Chooses a pipeline and what it binds: for each set in turn, offsets of its pieces.

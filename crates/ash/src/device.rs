@@ -84,7 +84,9 @@ pub const REQUIRED_EXTENSIONS: [&CStr; 1] = [ext::mesh_shader::NAME];
 
 /// Features that must be enabled: all members set here. Vulkan 1.3 itself is required too.
 ///
-/// To be chained to what a device is made with, after what the caller needs besides was set.
+/// Both are pushed to the `VkDeviceCreateInfo` that a device is made with (`push_next`), after what the caller needs
+/// besides was set in them. Where `VkPhysicalDeviceVulkan13Features` is in the chain, Vulkan wants
+/// `dynamicRendering` set there in place of the first one.
 #[derive(Clone, Copy, Debug)]
 pub struct RequiredFeatures {
     /// Rendering without render passes.

@@ -55,7 +55,7 @@ pub enum Error {
         reason: String,
     },
     /// A buffer would be larger than the device's limits for one.
-    #[error("{what} takes {bytes} bytes, this Vulkan device allows {limit} in one buffer")]
+    #[error("{what}: {bytes} bytes are needed, this Vulkan device allows {limit} in one buffer")]
     TooLarge {
         /// What is in it.
         what: &'static str,
@@ -86,8 +86,11 @@ pub enum Error {
         /// Its index.
         index: usize,
     },
-    /// Contours were made for mesh shaders with workgroups of other sizes.
-    #[error("the contours were made for another pass of mesh shaders")]
+    /// Contours were made for mesh shaders with workgroups of other sizes, or that record segments where these do not,
+    /// or the reverse.
+    #[error(
+        "the contours were made for mesh shaders with other workgroups, or that record segments where these do not"
+    )]
     OtherPass,
     /// It was made in commands that were never executed.
     #[error("{what} was made in commands that were never executed")]
@@ -98,11 +101,14 @@ pub enum Error {
     /// Contours are found and drawn in the commands that they were prepared in.
     #[error("the contours were not prepared in these commands")]
     Unprepared,
+    /// A pass was recorded before its look and its matrix: see [`MeshPass::prepare`](crate::MeshPass::prepare).
+    #[error("the pass was not prepared: it has no matrix and no look of lines")]
+    NoStyle,
     /// A surface goes with the contours that it was made for.
     #[error("the surface was made for other contours")]
     OtherContours,
     /// Queries are under way that do not go with it: see [`Counting`](crate::Counting).
-    #[error("{what} cannot be recorded while other shaders are counted")]
+    #[error("while shaders are counted, there cannot be {what}")]
     Counting {
         /// What.
         what: &'static str,
@@ -186,13 +192,13 @@ pub enum Error {
         capacity: u32,
     },
     /// Two things that must be of one device are not.
-    #[error("{what} was made for another Vulkan device")]
+    #[error("made for another Vulkan device: {what}")]
     OtherDevice {
         /// What.
         what: &'static str,
     },
     /// What is to be read was recorded into other commands than those that were executed.
-    #[error("{what} was asked for in other commands than these")]
+    #[error("not begun and ended in these commands, or asked for in others: {what}")]
     OtherCommands {
         /// What.
         what: &'static str,

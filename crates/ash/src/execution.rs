@@ -27,6 +27,8 @@ pub(crate) struct Download {
     pub(crate) what: &'static str,
     pub(crate) id: u64,
     pub(crate) buffer: Buffer,
+    /// Bytes of it that were copied.
+    pub(crate) size: usize,
 }
 
 /// Whether commands came to nothing: what they were to write holds anything then.
@@ -74,6 +76,6 @@ impl Download {
         if !executed.is_of(Some(self.id)) {
             return Err(Error::OtherCommands { what: self.what });
         }
-        Ok(self.buffer.bytes())
+        Ok(&self.buffer.bytes()[..self.size])
     }
 }

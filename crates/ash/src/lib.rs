@@ -30,6 +30,13 @@
 //! | [`Offscreen`], [`Picture`] | lines and strokes that no window shows |
 //! | [`Queries`], [`Timer`] | invocations, primitives and time, as the device counts them |
 //!
+//! In a frame: [`MeshContours::prepare`] and [`MeshPass::prepare`]; then rendering, of [`Offscreen::render`] or begun by
+//! the caller and taken by [`Commands::in_rendering`], and in it [`MeshPass::record`]; then, if anything is to be read,
+//! [`MeshContours::download`]. With a command buffer of one's own, [`Commands::from_raw`] comes first and
+//! [`Commands::finish`] last; what that gives is kept until a fence tells that the commands have executed, and its
+//! [`Recorded::assume_executed`] is what downloads are read with. Input lies in the command buffer, so that any number
+//! of frames may be under way.
+//!
 //! Vulkan 1.3 with `VK_EXT_mesh_shader` and dynamic rendering is needed, and subgroup operations in task and
 //! mesh shaders: see [`RequiredFeatures`]. Shaders are the WGSL of `drypoint-shaders`, compiled to SPIR-V by naga
 //! when a pipeline is made.

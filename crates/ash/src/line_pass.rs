@@ -77,6 +77,7 @@ impl LinePass {
     pub fn record(&self, rendering: &mut Rendering<'_>, contours: &Contours) -> Result<(), Error> {
         rendering.check(&self.device, "the pass of lines")?;
         contours.input.check(rendering.commands())?;
+        self.look.check()?;
         let sets: [(&Set, &[u32]); 2] = [(self.look.set(), &[]), (&contours.segment_set, &[])];
         rendering.bind(&self.pipeline, "the pass of lines", &sets)?;
         rendering.draw_indirect(contours.arguments(), Arguments::LINE_LIST);

@@ -1,5 +1,7 @@
 //! How lines look, on the GPU.
 
+use std::sync::{Mutex, PoisonError};
+
 use ash::vk;
 use ash::vk::BufferUsageFlags as Usage;
 use drypoint_shaders::{DepthOrder, LineStyle, Stroke};
@@ -8,6 +10,7 @@ use glam::Mat4;
 use crate::barrier::Use;
 use crate::binding::{Layout, Resource, Set};
 use crate::commands::Commands;
+use crate::execution::Fate;
 use crate::memory::Buffer;
 use crate::{Device, Error};
 
@@ -16,6 +19,8 @@ use crate::{Device, Error};
 pub(crate) struct Look {
     buffer: Buffer,
     set: Set,
+    /// Of the commands that it was recorded in last.
+    recorded: Mutex<Option<Fate>>,
 }
 
 impl Look {
@@ -23,7 +28,7 @@ impl Look {
     pub(crate) fn new(device: &Device, layout: &Layout) -> Result<Self, Error> {
         let buffer = uniform(device, "a line style", size_of::<Stroke>())?;
         let set = Set::new(layout, "the bindings of a line style", &[Resource::Buffer(&buffer)])?;
-        Ok(Self { buffer, set })
+        Ok(Self { buffer, set, recorded: Mutex::new(None) })
     }
 
     pub(crate) fn record(&self, commands: &mut Commands, scene_to_clip: Mat4, style: &LineStyle) {
@@ -31,6 +36,15 @@ impl Look {
         commands.barrier(Use::ANYTHING, Use::COPIED_TO);
         commands.update(&self.buffer, bytemuck::bytes_of(&stroke));
         commands.barrier(Use::COPIED_TO, Use::READ_BY_DRAWING);
+        *self.recorded.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(commands.fate().clone());
+    }
+
+    /// Fails if it was never recorded, or in commands that came to nothing.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let recorded = self.recorded.lock().unwrap_or_else(PoisonError::into_inner);
+        let fate = recorded.as_ref().ok_or(Error::NoStyle)?;
+        fate.check("the look of lines")
     }
 
     pub(crate) fn buffer(&self) -> &Buffer {

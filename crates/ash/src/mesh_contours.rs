@@ -37,7 +37,8 @@ pub struct MeshContours {
 }
 
 impl MeshContours {
-    /// Room for instances of `model`; and for that many segments, if `pass` records them.
+    /// Room for instances of `model`; and for that many segments, if `pass` records them: otherwise that part of
+    /// `capacity` does not count, and no segments are there to be read.
     ///
     /// # Errors
     /// If there is not enough memory, or `capacity` is beyond what the device allows in one buffer; if the model is of

@@ -230,12 +230,14 @@ impl MeshPass {
     ///
     /// # Errors
     /// If rendering is to other attachments than the pass was made for, or of another device; if the contours were not
-    /// prepared in these commands, or made for a pass with other workgroups; or while compute shaders are counted.
+    /// prepared in these commands, or made for a pass with other workgroups; if [`MeshPass::prepare`] was never called;
+    /// or while compute shaders are counted.
     pub fn record(
         &self,
         rendering: &mut Rendering<'_>,
         contours: &MeshContours,
     ) -> Result<(), Error> {
+        self.look.check()?;
         self.record_with(rendering, contours, self.look.set())
     }
 
@@ -245,7 +247,7 @@ impl MeshPass {
     /// If the pass draws something, and as [`MeshPass::record`].
     pub fn extract(&self, commands: &mut Commands, contours: &MeshContours) -> Result<(), Error> {
         let nothing = Targets { color: None, depth: None, size: [1, 1] };
-        self.record(&mut commands.render(&nothing), contours)
+        self.record_with(&mut commands.render(&nothing), contours, self.look.set())
     }
 
     pub(crate) fn record_with(

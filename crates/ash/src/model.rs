@@ -56,6 +56,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::new`].
+    ///
+    /// # Panics
+    /// If `adjacency` is of another mesh, with more vertices.
     pub fn without_patches(
         commands: &mut Commands,
         mesh: &Mesh,

@@ -27,7 +27,7 @@ impl<'a> Shader<'a> {
         source: &str,
         format: vk::Format,
     ) -> Result<Self, Error> {
-        let what = "a fragment shader of one's own";
+        let what = "lines of one's own";
         let (module, words) = compile(what, source, BoundsCheckPolicy::Restrict)?;
         check_custom(&module, format)
             .map_err(|reason| Error::Shader { what, reason: reason.to_owned() })?;

@@ -459,3 +459,45 @@ fn what_failed_or_was_forgotten_leaves_images_as_they_have_to_be() {
     made.expect("it is recorded");
     support::expect_silence();
 }
+
+/// A buffer has 16 bytes at least, a picture what it has.
+#[test]
+fn small_pictures_have_their_own_size() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    for size in [[1, 1], [3, 1], [1, 2], [5, 3]] {
+        let (pixels, executed) = gpu
+            .run(|commands| {
+                let offscreen = Offscreen::new(commands, size)?;
+                drop(offscreen.render(commands, [0.2, 0.4, 0.6, 1.0])?);
+                offscreen.download(commands)
+            })
+            .expect("it is drawn");
+        let pixels = pixels.read(&executed).expect("it was drawn by these");
+        let count = size[0] as usize * size[1] as usize;
+        assert_eq!(pixels, [51, 102, 153, 255].repeat(count), "{size:?}");
+    }
+    support::expect_silence();
+}
+
+#[test]
+fn a_pass_without_a_look_is_refused() {
+    if support::is_without_gpu() {
+        return;
+    }
+    let gpu = gpu();
+    let model = model(&gpu, &patches(&shapes::icosphere(100), Levels::One));
+    let options = MeshOptions { output: MeshOutput::Lines(ATTACHED), ..MeshOptions::default() };
+    let pass = MeshPass::new(gpu.device(), &options).expect("shaders compile");
+    let (placements, _) = scene();
+    let error = gpu.run(|commands| {
+        let mut contours = MeshContours::new(&pass, &model, CAPACITY)?;
+        contours.prepare(commands, &placements, Method::Patches)?;
+        let offscreen = Offscreen::new(commands, SIZE)?;
+        pass.record(&mut offscreen.render(commands, [1.0; 4])?, &contours)
+    });
+    assert_eq!(error.expect_err("it has no matrix"), Error::NoStyle);
+    support::expect_silence();
+}

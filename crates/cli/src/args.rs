@@ -111,7 +111,7 @@ pub(crate) struct DrawArgs {
 pub(crate) enum DrawMethod {
     /// The processor, by exact predicates
     Cpu,
-    /// A GPU, in one frame: contours alone, those that are visible, as PNG
+    /// A GPU, in one frame: visible contours alone, as PNG; no --json, --show, --hidden or --specks
     Wgpu,
     /// As wgpu, by mesh shaders: needs a Vulkan 1.3 driver that has them
     Ash,

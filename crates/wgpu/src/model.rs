@@ -50,6 +50,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::new`].
+    ///
+    /// # Panics
+    /// If `adjacency` is of another mesh, with more vertices.
     pub fn without_patches(
         extractor: &Extractor,
         mesh: &Mesh,
