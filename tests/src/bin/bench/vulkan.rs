@@ -57,6 +57,8 @@ pub(crate) fn run(gpu: &Gpu, run: Run) -> GpuRun {
 struct Subject {
     name: &'static str,
     method: Method,
+    /// Edges of its largest piece of a patch.
+    largest: u32,
     computed: Contours,
     meshed: MeshContours,
     /// Milliseconds of both.
@@ -153,6 +155,7 @@ impl<'a> Frames<'a> {
         Ok(Subject {
             name,
             method,
+            largest: content.patches.iter().map(|patch| patch.count).max().unwrap_or(0),
             computed: Contours::new(&self.extractor, &model, capacity)?,
             meshed: MeshContours::new(&self.mesh_pass, &model, capacity)?,
             taken: [Vec::new(), Vec::new()],
@@ -198,7 +201,9 @@ impl<'a> Frames<'a> {
                 "{launched} mesh workgroups were launched, {needed} were asked for"
             ));
         }
-        if subject.method == Method::Patches && launched > mesh.survivors {
+        // Larger patches than fit a workgroup take several.
+        let fits = subject.largest <= self.mesh_pass.edges_per_workgroup();
+        if subject.method == Method::Patches && fits && launched > mesh.survivors {
             return Err(format!("{launched} mesh workgroups for {} survivors", mesh.survivors));
         }
         for counts in [compute, mesh] {
