@@ -39,6 +39,7 @@ mod plan;
 mod sources;
 mod statistics;
 mod style;
+mod triangles;
 
 pub use content::{Chunk, Content, ContentEdge, MAX_GROUP, MAX_PIECE};
 pub use draw_plan::{Draw, DrawLimits, DrawPlan};
@@ -57,3 +58,4 @@ pub use sources::{
 };
 pub use statistics::Statistics;
 pub use style::{DepthOrder, LineStyle, View, divide_by_alpha};
+pub use triangles::Triangles;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ash::vk;
 use ash::vk::BufferUsageFlags as Usage;
 use drypoint_mesh::Mesh;
-use drypoint_shaders::{DEPTH, DepthOrder, Part};
+use drypoint_shaders::{DEPTH, DepthOrder, Part, Triangles};
 use glam::Mat4;
 
 use crate::barrier::Use;
@@ -118,19 +118,8 @@ impl Surface {
             return Err(Error::OtherMeshes);
         }
         let alignment = commands.device().limits().min_uniform_buffer_offset_alignment;
-        let stride = usize::try_from(alignment).unwrap_or(256).max(size_of::<Part>());
-        let (mut indices, mut uniforms, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first_vertex = 0;
-        for (part, mesh) in (0..).zip(meshes) {
-            let first = index(indices.len());
-            let triangles = mesh.triangles().iter().flatten();
-            indices.extend(triangles.map(|vertex| first_vertex + vertex));
-            first_vertex += index(mesh.positions().len());
-            parts.push((index(uniforms.len()), first..index(indices.len())));
-            let part = Part { part, part_count: model.part_count() };
-            uniforms.extend_from_slice(bytemuck::bytes_of(&part));
-            uniforms.resize(uniforms.len().next_multiple_of(stride), 0u8);
-        }
+        let alignment = usize::try_from(alignment).unwrap_or(256);
+        let Triangles { indices, uniforms, parts } = Triangles::new(meshes, alignment);
         let what = "the triangles of a surface";
         let indices = commands.upload(what, bytemuck::cast_slice(&indices), Usage::INDEX_BUFFER)?;
         let uniforms =
@@ -181,8 +170,4 @@ impl<'a> From<&'a MeshContours> for Found<'a> {
     fn from(contours: &'a MeshContours) -> Self {
         Self::Mesh(contours)
     }
-}
-
-fn index(length: usize) -> u32 {
-    u32::try_from(length).expect("what has a number is counted in 32 bits")
 }

@@ -1,7 +1,7 @@
 //! Depths of the surfaces that hide lines.
 
 use drypoint_mesh::Mesh;
-use drypoint_shaders::{DEPTH, DepthOrder, Part};
+use drypoint_shaders::{DEPTH, DepthOrder, Part, Triangles};
 use glam::Mat4;
 use wgpu::BufferUsages;
 
@@ -134,20 +134,8 @@ impl Surface {
         if !model.is_of(meshes) {
             return Err(Error::OtherMeshes);
         }
-        let stride = device.limits().min_uniform_buffer_offset_alignment as usize;
-        let stride = stride.max(size_of::<Part>());
-        let (mut indices, mut uniforms, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut first_vertex = 0;
-        for (part, mesh) in (0..).zip(meshes) {
-            let first = index(indices.len());
-            let triangles = mesh.triangles().iter().flatten();
-            indices.extend(triangles.map(|vertex| first_vertex + vertex));
-            first_vertex += index(mesh.positions().len());
-            parts.push((index(uniforms.len()), first..index(indices.len())));
-            let part = Part { part, part_count: model.part_count() };
-            uniforms.extend_from_slice(bytemuck::bytes_of(&part));
-            uniforms.resize(uniforms.len().next_multiple_of(stride), 0u8);
-        }
+        let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let Triangles { indices, uniforms, parts } = Triangles::new(meshes, alignment);
         let uniforms = filled(device, "the parts of a surface", &uniforms, BufferUsages::UNIFORM)?;
         let size = wgpu::BufferSize::new(size_of::<Part>() as u64);
         let part = wgpu::BufferBinding { buffer: &uniforms, offset: 0, size };
@@ -162,8 +150,4 @@ impl Surface {
             parts,
         })
     }
-}
-
-fn index(length: usize) -> u32 {
-    u32::try_from(length).expect("what has a number is counted in 32 bits")
 }
