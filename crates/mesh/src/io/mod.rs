@@ -47,7 +47,7 @@ use std::path::Path;
 
 pub use error::{Fault, Place, ReadError};
 pub use format::Format;
-pub use parts::{Model, Part};
+pub use parts::{Dropped, Model, Part};
 
 /// Reads the mesh in a file.
 ///

@@ -8,11 +8,11 @@
 use glam::Vec3;
 
 use super::error::{Fault, Place, ReadError, lossy};
-use super::parts::{Model, Parts};
+use super::parts::{self, Model, Parts};
 use super::polygon::Faces;
 use super::text::{self, Lines, Words};
 
-/// Reads an OBJ file: `v`, `f`, `o` and `g` statements; all others are ignored.
+/// Reads an OBJ file: `v`, `f`, `o`, `g` and `usemtl` statements; all others are ignored.
 pub(super) fn parse(bytes: &[u8]) -> Result<Model, ReadError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if let Some(byte) = bytes.iter().position(|&byte| byte == 0) {
@@ -50,6 +50,7 @@ struct Reader {
     positions: Vec<Vec3>,
     faces: Faces,
     parts: Parts,
+    materials: Parts,
     /// Faces that use a vertex not seen yet, each with that vertex, from 1, and its line; only
     /// those that reach further than all before them.
     ahead: Vec<(u64, u64)>,
@@ -65,6 +66,11 @@ impl Reader {
             Some(b"o" | b"g") => {
                 let name = lossy(words.0.trim_ascii());
                 self.parts.begin(name, self.faces.triangle_count());
+                Ok(())
+            }
+            Some(b"usemtl") => {
+                let name = lossy(words.0.trim_ascii());
+                self.materials.begin(name, self.faces.triangle_count());
                 Ok(())
             }
             _ => Ok(()),
@@ -124,6 +130,6 @@ impl Reader {
             return Err(Fault::VertexOutOfRange { vertex, vertex_count }.on_line(line));
         }
         let triangles = self.faces.into_triangles(&self.positions);
-        self.parts.into_model(self.positions, triangles)
+        parts::model(self.positions, triangles, self.parts, self.materials)
     }
 }

@@ -14,14 +14,31 @@ pub struct Model {
     pub mesh: Mesh,
     /// In file order; the ranges follow one another and cover all triangles.
     pub parts: Vec<Part>,
+    /// The same triangles by their material, cut and named anew: in file order, the ranges follow
+    /// one another and cover all triangles, and no two that follow have one name. One run of the
+    /// empty name where the file names no materials.
+    pub materials: Vec<Part>,
+    /// What of the file is not in the mesh.
+    pub dropped: Dropped,
+}
+
+/// What a reader left out, because no surface can be made of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// Vertices that are NaN, infinite or beyond the range of f32. They keep their numbers, at the
+    /// origin, and no triangle uses them.
+    pub vertices: usize,
+    /// Faces of the file that use such a vertex, each counted once, whatever its corners.
+    pub faces: usize,
 }
 
 /// Triangles that belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// The latest `o` or `g` name in OBJ, the name of a solid in ascii STL; in glTF the name of the
-    /// node, else of its mesh, else "node 3", followed by "/2" for primitive 2 of a mesh of
-    /// several. Empty where the file gives none.
+    /// In [`Model::parts`] the latest `o` or `g` name in OBJ, the name of a solid in ascii STL; in
+    /// glTF the name of the node, else of its mesh, else "node 3", followed by "/2" for primitive 2
+    /// of a mesh of several. In [`Model::materials`] the latest `usemtl` name in OBJ. Empty where
+    /// the file gives none.
     pub name: String,
     /// Indices of its triangles; never empty.
     pub triangles: Range<u32>,
@@ -46,19 +63,11 @@ impl Parts {
         }
     }
 
-    /// The model of these positions and triangles.
+    /// The parts of so many triangles.
     ///
     /// # Errors
-    /// No triangles, or more than [`MAX_TRIANGLES`].
-    pub(super) fn into_model(
-        mut self,
-        positions: Vec<Vec3>,
-        triangles: Vec<[u32; 3]>,
-    ) -> Result<Model, ReadError> {
-        let count = triangles.len();
-        if count == 0 {
-            return Err(ReadError::NoFaces);
-        }
+    /// More than [`MAX_TRIANGLES`].
+    fn ending_at(mut self, count: usize) -> Result<Vec<Part>, MeshError> {
         if self.starts.first().is_none_or(|&(_, start)| start > 0) {
             self.starts.insert(0, (String::new(), 0));
         }
@@ -73,6 +82,25 @@ impl Parts {
             end = start;
         }
         parts.reverse();
-        Ok(Model { mesh: Mesh::new(positions, triangles)?, parts })
+        Ok(parts)
     }
+}
+
+/// The model of these positions and triangles, with what is named in them.
+///
+/// # Errors
+/// No triangles, or more than [`MAX_TRIANGLES`].
+pub(super) fn model(
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    parts: Parts,
+    materials: Parts,
+) -> Result<Model, ReadError> {
+    let count = triangles.len();
+    if count == 0 {
+        return Err(ReadError::NoFaces);
+    }
+    let (parts, materials) = (parts.ending_at(count)?, materials.ending_at(count)?);
+    let mesh = Mesh::new(positions, triangles)?;
+    Ok(Model { mesh, parts, materials, dropped: Dropped::default() })
 }

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::error::{Fault, Place, ReadError, lossy};
 use super::format::is_ascii_stl;
-use super::parts::{Model, Parts};
+use super::parts::{self, Model, Parts};
 use super::text::{self, Lines, Words};
 
 /// Bytes before the facets of a binary file: 80 that mean nothing and the count.
@@ -31,7 +31,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Model, ReadError> {
     let vertex_count = u32::try_from(solids.positions.len()).unwrap_or(u32::MAX);
     let corners: Vec<u32> = (0..vertex_count).collect();
     let triangles = corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
-    solids.parts.into_model(solids.positions, triangles)
+    parts::model(solids.positions, triangles, solids.parts, Parts::default())
 }
 
 #[derive(Default)]

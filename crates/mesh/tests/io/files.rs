@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use drypoint_mesh::io::{Format, Model, parse};
+use drypoint_mesh::io::{Format, Model, Part, parse};
 use glam::Vec3;
 
 /// The one place that asks for positions and triangles.
@@ -24,8 +24,18 @@ pub(crate) fn check(
 /// The one place that asks for parts.
 #[track_caller]
 pub(crate) fn check_parts(model: &Model, expected: &[(&str, Range<u32>)]) {
-    let found: Vec<_> =
-        model.parts.iter().map(|part| (part.name.as_str(), part.triangles.clone())).collect();
+    check_runs(&model.parts, expected);
+}
+
+/// The one place that asks for materials.
+#[track_caller]
+pub(crate) fn check_materials(model: &Model, expected: &[(&str, Range<u32>)]) {
+    check_runs(&model.materials, expected);
+}
+
+#[track_caller]
+fn check_runs(runs: &[Part], expected: &[(&str, Range<u32>)]) {
+    let found: Vec<_> = runs.iter().map(|r| (r.name.as_str(), r.triangles.clone())).collect();
     assert_eq!(found, expected);
 }
 

@@ -2,7 +2,7 @@
 
 use drypoint_mesh::io::{Format, parse};
 
-use crate::files::{binary_stl, check, check_parts, ply};
+use crate::files::{binary_stl, check, check_materials, check_parts, ply};
 
 const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 const TWO: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
@@ -49,6 +49,15 @@ fn obj_parts_are_objects_and_groups() {
     let model = parse(Format::Obj, text).unwrap();
     check_parts(&model, &[("", 0..1), ("its arm", 1..5), ("", 5..6)]);
     check_parts(&parse(Format::Obj, b"v 0 0 0\nf 1 1 1").unwrap(), &[("", 0..1)]);
+}
+
+#[test]
+fn obj_materials_run_across_parts() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nusemtl nothing\nusemtl red wine\n\
+        g a\nf 1 2 3 4\nusemtl red wine \ng b\nf 1 2 3\nusemtl\nf 1 2 3\nusemtl last\n";
+    let model = parse(Format::Obj, text).unwrap();
+    check_parts(&model, &[("", 0..1), ("a", 1..3), ("b", 3..5)]);
+    check_materials(&model, &[("", 0..1), ("red wine", 1..4), ("", 4..5)]);
 }
 
 #[test]
@@ -134,12 +143,14 @@ fn stl_facets_keep_their_own_vertices() {
     let (first, second) = (facet(&corners[..3]), facet(&corners[3..]));
     let triangles = [[0, 1, 2], [3, 4, 5]];
     let one = format!("solid\n{first}{second}endsolid");
-    check_parts(&check(Format::Stl, one.as_bytes(), &corners, &triangles), &[("", 0..2)]);
+    let model = check(Format::Stl, one.as_bytes(), &corners, &triangles);
+    check_parts(&model, &[("", 0..2)]);
     let several = format!(
         "\nSOLID left side\n{first}endsolid left side\nsolid none\nendsolid\nsolid b\n{second}endsolid\n"
     );
     let model = check(Format::Stl, several.as_bytes(), &corners, &triangles);
     check_parts(&model, &[("left side", 0..1), ("b", 1..2)]);
+    check_materials(&model, &[("", 0..2)]);
 
     for header in [*b"solid pretends", *b"binary rubbish"] {
         let mut bytes = binary_stl(&header, &corners);

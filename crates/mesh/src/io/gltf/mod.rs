@@ -23,7 +23,7 @@ use glam::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
 use super::error::{Fault, Place, ReadError};
-use super::parts::{Model, Parts};
+use super::parts::{self, Model, Parts};
 use crate::{MAX_TRIANGLES, MeshError};
 use accessor::Elements;
 use document::Document;
@@ -54,7 +54,7 @@ pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Model, ReadEr
             }
         }
     }
-    parts.into_model(welded.positions, welded.triangles)
+    parts::model(welded.positions, welded.triangles, parts, Parts::default())
 }
 
 /// The triangles of a primitive in its own vertices, which may be out of range; `None` if it is

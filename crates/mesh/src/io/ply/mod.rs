@@ -14,7 +14,7 @@ mod header;
 use glam::Vec3;
 
 use super::error::{Fault, Place, ReadError};
-use super::parts::{Model, Parts};
+use super::parts::{self, Model, Parts};
 use super::polygon::Faces;
 use ascii::Ascii;
 use binary::Binary;
@@ -75,7 +75,7 @@ fn read<V: Values>(header: &Header, mut values: V) -> Result<Model, ReadError> {
         }
     }
     let triangles = mesh.faces.into_triangles(&mesh.positions);
-    Parts::default().into_model(mesh.positions, triangles)
+    parts::model(mesh.positions, triangles, Parts::default(), Parts::default())
 }
 
 #[derive(Default)]
