@@ -37,8 +37,10 @@ impl Source {
         if let Some(shape) = name.strip_prefix("shape:") {
             let (shape, mesh) = build_shape(shape)?;
             let triangles = 0..u32::try_from(mesh.triangles().len()).map_err(|e| e.to_string())?;
-            let parts = vec![io::Part { name: shape.to_owned(), triangles }];
-            return Ok(Self { model: io::Model { mesh, parts }, name });
+            let run = |name: &str| io::Part { name: name.to_owned(), triangles: triangles.clone() };
+            let (parts, materials) = (vec![run(shape)], vec![run("")]);
+            let model = io::Model { mesh, parts, materials, dropped: io::Dropped::default() };
+            return Ok(Self { model, name });
         }
         if is_patches(model) {
             return Err(format!("{name}: is a patch file; a mesh is wanted here"));
