@@ -9,7 +9,7 @@ const MAX_PAIRED: usize = 15;
 
 /// The edges of a mesh, each with the faces on both sides.
 ///
-/// - Vertices at equal positions are welded.
+/// - Vertices at equal positions are welded, or those that the caller says.
 /// - An edge of k ≥ 3 faces is one wing per pair of faces, k(k − 1)/2 in all, up to k = 16; above,
 ///   each face is paired with the 15 that follow.
 /// - A *collapsed* triangle, two of whose corners are welded together, is no face: its neighbours
@@ -63,7 +63,21 @@ pub struct TopologyReport {
 impl MeshAdjacency {
     /// Pairs the half-edges of `mesh`. Linear but for one sort of the edges.
     pub fn new(mesh: &Mesh) -> Self {
-        let representatives = weld_by_position(mesh.positions());
+        Self::welded(mesh, weld_by_position(mesh.positions()))
+    }
+
+    /// As [`MeshAdjacency::new`], where somebody else knows which vertices are one: for each vertex
+    /// the lowest index of those that it is one with. For meshes that move, whose vertices may meet
+    /// for a moment.
+    ///
+    /// # Panics
+    /// If there is not one representative for each vertex, or one of them does not stand for itself.
+    pub fn welded(mesh: &Mesh, representatives: Vec<u32>) -> Self {
+        assert_eq!(representatives.len(), mesh.positions().len(), "one for each vertex");
+        assert!(
+            representatives.iter().all(|&r| representatives.get(r as usize) == Some(&r)),
+            "a representative stands for itself"
+        );
         let without_area: Vec<bool> =
             mesh.triangles().iter().map(|t| !has_area(t.map(|v| mesh.position(v)))).collect();
         let welded = Welded { mesh, representatives: &representatives };
@@ -134,6 +148,12 @@ impl MeshAdjacency {
     /// they were before welding.
     pub fn sides(&self, edge: EdgeId) -> [HalfEdge; 2] {
         self.sides[edge.index()]
+    }
+
+    /// The edge with these half-edges on its left and its right, if it is one. Logarithmic.
+    pub fn edge_between(&self, left: HalfEdge, right: HalfEdge) -> Option<EdgeId> {
+        let found = self.sides.binary_search(&[left, right]).ok()?;
+        u32::try_from(found).ok().map(EdgeId)
     }
 
     /// What the edge is.

@@ -59,7 +59,7 @@ pub fn contour_vertex_pairs(
 }
 
 /// The tie rule: a viewpoint in the plane of a face sees its front.
-fn is_front(side: Ordering) -> bool {
+pub(crate) fn is_front(side: Ordering) -> bool {
     side != Ordering::Less
 }
 

@@ -17,6 +17,7 @@
 //! assert!(contours.len() > 40, "the contour of a ball is a ring");
 //! ```
 //!
+//! Models that move, or that place one mesh many times, are in [`rig`].
 //! Readers for OBJ, PLY, STL and glTF are in [`io`], each behind a feature of its own; procedural
 //! meshes, asked for by property, are in [`shapes`].
 
@@ -30,6 +31,7 @@ mod weld;
 mod wing;
 
 pub mod io;
+pub mod rig;
 pub mod shapes;
 
 pub use adjacency::{MeshAdjacency, TopologyReport};
