@@ -42,8 +42,27 @@ pub fn fuse(
     params: &FusionParams,
     progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
 ) -> Result<PatchSet, FuseError> {
+    fuse_edges(mesh, adjacency, (filter, adjacency.edges(filter).collect()), params, progress)
+}
+
+/// As [`fuse`], of some of the edges that the filter keeps: of a rigid part, say, those that do not go on
+/// in another one ([`Shape::edges`](drypoint_mesh::rig::Shape::edges)). The patches hold these alone, by id.
+///
+/// # Errors
+/// As [`fuse`].
+///
+/// # Panics
+/// If an edge is no edge of `adjacency`, or a boundary.
+pub fn fuse_edges(
+    mesh: &Mesh,
+    adjacency: &MeshAdjacency,
+    (filter, kept): (EdgeFilter, Vec<EdgeId>),
+    params: &FusionParams,
+    progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+) -> Result<PatchSet, FuseError> {
     params.check()?;
-    let kept: Vec<EdgeId> = adjacency.edges(filter).collect();
+    let is_kept = |&edge: &EdgeId| adjacency.keeps(edge, filter);
+    assert!(kept.iter().all(is_kept), "edges of two faces that the filter keeps");
     let counter = Counter::new(kept.len(), progress);
     counter.count(0)?;
     let frame = Frame::new(mesh, adjacency);

@@ -56,13 +56,15 @@ mod patch_set;
 mod planes;
 mod progress;
 mod screen;
+mod shapes;
 mod validate;
 
 pub use cost::{CostModel, VIEW_DISTANCES, ViewProfile};
 pub use error::{FuseError, InvalidParams};
 pub use file::{PatchFile, PatchFileError};
-pub use fuse::fuse;
+pub use fuse::{fuse, fuse_edges};
 pub use params::{BoundKind, FusionParams, Levels, Method, SphereKind};
 pub use patch_set::{Patch, PatchSet, Provenance, Summary, SuperPatch, mesh_hash};
 pub use progress::{Cancelled, Progress};
+pub use shapes::fuse_shapes;
 pub use validate::InvalidPatches;
