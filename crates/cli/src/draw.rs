@@ -236,7 +236,7 @@ fn classes(args: &LineArgs) -> &[Class] {
     args.lines.as_deref().unwrap_or(CLASSES)
 }
 
-fn options(args: &LineArgs) -> Result<LineOptions, String> {
+fn options(args: &LineArgs) -> Result<LineOptions<'static>, String> {
     let crease = classes(args).contains(&Class::Crease);
     match args.crease_angle {
         Some(angle) if !(0.0..=180.0).contains(&angle) => {
@@ -251,6 +251,7 @@ fn options(args: &LineArgs) -> Result<LineOptions, String> {
     Ok(LineOptions {
         boundary: classes(args).contains(&Class::Boundary),
         crease_angle: crease.then_some(least),
+        ..LineOptions::default()
     })
 }
 

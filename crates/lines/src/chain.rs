@@ -1,46 +1,34 @@
 //! Segments joined into polylines.
 
-use drypoint_mesh::{EdgeId, Mesh};
+use drypoint_mesh::EdgeId;
 use glam::DVec3;
 
 use crate::Segment;
 
-/// At a vertex of more lines than this all of them end: the pairs to compare grow as the square.
+/// At a point of more lines than this all of them end: the pairs to compare grow as the square.
 const MAX_PAIRED: usize = 32;
 
-/// A polyline along edges of the mesh.
+/// A polyline of segments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
-    /// Welded vertices along the line: one more than edges, or as many if it is closed.
-    pub vertices: Vec<u32>,
-    /// The edge from each vertex to the next.
-    pub edges: Vec<EdgeId>,
-    /// The last edge ends at the first vertex.
+    /// The segments along the line, each in the direction of the chain: from where the one before it
+    /// ends.
+    pub segments: Vec<Segment>,
+    /// The last segment ends where the first one starts.
     pub closed: bool,
 }
 
-impl Chain {
-    /// The segments along the line, each in the direction of the chain.
-    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
-        let next = self.vertices.iter().cycle().skip(1);
-        let ends = self.vertices.iter().zip(next);
-        ends.zip(&self.edges).map(|((&from, &to), &edge)| Segment { ends: [from, to], edge })
-    }
-}
-
-/// Joins `segments` at equal vertices, each into exactly one chain.
+/// Joins `segments` at equal ends, each into exactly one chain. `position` says where an end is, as
+/// [`Segments::position`](crate::Segments::position) does.
 ///
-/// Two lines that meet at a vertex are one. Where more meet, the straightest pair in space
-/// continues, then the straightest of what is left; ties go to the lowest edge id. Chains are
-/// ordered by their lowest edge and run the way that edge does. Where more than 32 lines meet, all
-/// end. Linear but for a sort.
-///
-/// # Panics
-/// If a vertex is not one of `mesh`.
-pub fn chain(mesh: &Mesh, segments: &[Segment]) -> Vec<Chain> {
-    let links = links(mesh, segments);
+/// Two lines that meet are one. Where more meet, the straightest pair in space continues, then the
+/// straightest of what is left; ties go to the lowest edge id, or to the lowest faces. Chains are
+/// ordered by their lowest edge or faces and run the way that segment does. Where more than 32 lines
+/// meet, all end. Linear but for a sort.
+pub fn chain(position: impl Fn(u32) -> DVec3, segments: &[Segment]) -> Vec<Chain> {
+    let links = links(position, segments);
     let mut order: Vec<usize> = (0..segments.len()).collect();
-    order.sort_by_key(|&segment| segments[segment].edge);
+    order.sort_by_key(|&segment| rank(&segments[segment]));
     let mut used = vec![false; segments.len()];
     let mut chains = Vec::new();
     for first in order {
@@ -59,25 +47,22 @@ pub fn chain(mesh: &Mesh, segments: &[Segment]) -> Vec<Chain> {
         if closed {
             start = End { segment: first, at: 0 };
         }
-        let mut chain = Chain { vertices: vec![], edges: vec![], closed };
-        let mut end = start;
-        loop {
-            let Segment { ends, edge } = segments[end.segment];
-            used[end.segment] = true;
-            chain.vertices.push(ends[end.at]);
-            chain.edges.push(edge);
-            match links[end.other().index()] {
-                Some(next) if next != start => end = next,
-                Some(_) => break,
-                None => {
-                    chain.vertices.push(ends[1 - end.at]);
-                    break;
-                }
-            }
+        let mut line = Vec::new();
+        let mut end = Some(start);
+        while let Some(End { segment, at }) = end {
+            let Segment { ends, .. } = segments[segment];
+            used[segment] = true;
+            line.push(Segment { ends: [ends[at], ends[1 - at]], ..segments[segment] });
+            end = links[End { segment, at }.other().index()].filter(|&next| next != start);
         }
-        chains.push(chain);
+        chains.push(Chain { segments: line, closed });
     }
     chains
+}
+
+/// What decides between segments.
+fn rank(segment: &Segment) -> (Option<EdgeId>, [u32; 2]) {
+    (segment.edge, segment.faces)
 }
 
 /// One end of a segment.
@@ -99,36 +84,36 @@ impl End {
 }
 
 /// For each end of each segment the end that it continues at.
-fn links(mesh: &Mesh, segments: &[Segment]) -> Vec<Option<End>> {
+fn links(position: impl Fn(u32) -> DVec3, segments: &[Segment]) -> Vec<Option<End>> {
     let mut ends: Vec<End> =
         (0..segments.len()).flat_map(|segment| [0, 1].map(|at| End { segment, at })).collect();
-    let vertex = |end: &End| segments[end.segment].ends[end.at];
-    ends.sort_by_key(|end| (vertex(end), segments[end.segment].edge, end.at));
+    let point = |end: &End| segments[end.segment].ends[end.at];
+    ends.sort_by_key(|end| (point(end), rank(&segments[end.segment]), end.at));
     let mut links = vec![None; ends.len()];
     let mut link = |a: End, b: End| {
         links[a.index()] = Some(b);
         links[b.index()] = Some(a);
     };
-    for around in ends.chunk_by(|a, b| vertex(a) == vertex(b)) {
+    for around in ends.chunk_by(|a, b| point(a) == point(b)) {
         match around {
             [a, b] => link(*a, *b),
             _ if around.len() > MAX_PAIRED => {}
-            _ => pair_straightest(mesh, segments, around, &mut link),
+            _ => pair_straightest(&position, segments, around, &mut link),
         }
     }
     links
 }
 
-/// Pairs the ends around one vertex, straightest first.
+/// Pairs the ends at one point, straightest first.
 fn pair_straightest(
-    mesh: &Mesh,
+    position: impl Fn(u32) -> DVec3,
     segments: &[Segment],
     around: &[End],
     mut link: impl FnMut(End, End),
 ) {
     let leaving = |end: &End| -> DVec3 {
         let ends = segments[end.segment].ends;
-        let [here, there] = [ends[end.at], ends[1 - end.at]].map(|v| mesh.position(v).as_dvec3());
+        let [here, there] = [ends[end.at], ends[1 - end.at]].map(&position);
         (there - here).normalize_or_zero()
     };
     let directions: Vec<DVec3> = around.iter().map(leaving).collect();
@@ -148,57 +133,72 @@ fn pair_straightest(
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
     use proptest::prelude::*;
 
     use super::*;
 
     /// Positions around a circle, so that no two directions are the same.
-    fn points(count: usize) -> Mesh {
-        let angle = |i: usize| i as f32 * 2.4;
-        let positions =
-            (0..count).map(|i| Vec3::new(angle(i).cos(), angle(i).sin(), i as f32 * 0.1));
-        Mesh::new(positions.collect(), vec![]).unwrap()
+    fn around(point: u32) -> DVec3 {
+        let angle = f64::from(point) * 2.4;
+        DVec3::new(angle.cos(), angle.sin(), 0.1 * f64::from(point))
     }
 
     fn segments(ends: &[[u32; 2]]) -> Vec<Segment> {
-        (0..).zip(ends).map(|(i, &ends)| Segment { ends, edge: EdgeId(10 * i) }).collect()
+        let along = |(i, &ends): (u32, &[u32; 2])| Segment {
+            ends,
+            faces: [i, 100 - i],
+            edge: Some(EdgeId(10 * i)),
+        };
+        (0..).zip(ends).map(along).collect()
+    }
+
+    /// The points along a chain; a closed one names the first no second time.
+    fn points(chain: &Chain) -> Vec<u32> {
+        let mut points: Vec<u32> = chain.segments.iter().map(|s| s.ends[0]).collect();
+        for (segment, next) in chain.segments.iter().zip(&points[1..]) {
+            assert_eq!(segment.ends[1], *next, "a chain has a gap");
+        }
+        let end = chain.segments.last().unwrap().ends[1];
+        if chain.closed {
+            assert_eq!(end, points[0]);
+        } else {
+            points.push(end);
+        }
+        points
     }
 
     #[track_caller]
-    fn check(mesh: &Mesh, ends: &[[u32; 2]], expected: &[(&[u32], bool)]) {
-        let chains = chain(mesh, &segments(ends));
-        let found: Vec<(&[u32], bool)> =
-            chains.iter().map(|chain| (&chain.vertices[..], chain.closed)).collect();
+    fn check(position: impl Fn(u32) -> DVec3, ends: &[[u32; 2]], expected: &[(&[u32], bool)]) {
+        let chains = chain(position, &segments(ends));
+        let found: Vec<_> = chains.iter().map(|chain| (points(chain), chain.closed)).collect();
+        let expected: Vec<_> = expected.iter().map(|(p, closed)| (p.to_vec(), *closed)).collect();
         assert_eq!(found, expected);
     }
 
     #[test]
     fn lines_are_joined_and_rings_closed() {
-        let mesh = points(6);
-        check(&mesh, &[], &[]);
-        check(&mesh, &[[3, 1]], &[(&[3, 1], false)]);
-        check(&mesh, &[[1, 2], [0, 1], [3, 2]], &[(&[0, 1, 2, 3], false)]);
-        check(&mesh, &[[1, 2], [0, 2], [1, 0]], &[(&[1, 2, 0], true)]);
-        check(&mesh, &[[0, 1], [4, 5], [2, 1]], &[(&[0, 1, 2], false), (&[4, 5], false)]);
+        check(around, &[], &[]);
+        check(around, &[[3, 1]], &[(&[3, 1], false)]);
+        check(around, &[[1, 2], [0, 1], [3, 2]], &[(&[0, 1, 2, 3], false)]);
+        check(around, &[[1, 2], [0, 2], [1, 0]], &[(&[1, 2, 0], true)]);
+        check(around, &[[0, 1], [4, 5], [2, 1]], &[(&[0, 1, 2], false), (&[4, 5], false)]);
     }
 
     #[test]
     fn the_straightest_line_goes_on() {
-        let at = |x, y| Vec3::new(x, y, 0.0);
+        let at = |x, y| DVec3::new(x, y, 0.0);
         let cross = [at(0.0, 0.0), at(1.0, 0.0), at(-1.0, 0.1), at(0.0, 1.0), at(0.1, -1.0)];
-        let mesh = Mesh::new(cross.to_vec(), vec![]).unwrap();
+        let cross = |point: u32| cross[point as usize];
         let spokes = [[0, 1], [0, 3], [0, 2], [4, 0]];
-        check(&mesh, &spokes, &[(&[2, 0, 1], false), (&[4, 0, 3], false)]);
-        check(&mesh, &spokes[..3], &[(&[2, 0, 1], false), (&[0, 3], false)]);
+        check(cross, &spokes, &[(&[2, 0, 1], false), (&[4, 0, 3], false)]);
+        check(cross, &spokes[..3], &[(&[2, 0, 1], false), (&[0, 3], false)]);
     }
 
     #[test]
     fn at_a_hub_of_very_many_lines_all_end() {
-        let mesh = points(40);
         let spokes: Vec<[u32; 2]> = (1..40).map(|i| [0, i]).collect();
-        assert_eq!(chain(&mesh, &segments(&spokes)).len(), 39);
-        assert_eq!(chain(&mesh, &segments(&spokes[..32])).len(), 16);
+        assert_eq!(chain(around, &segments(&spokes)).len(), 39);
+        assert_eq!(chain(around, &segments(&spokes[..32])).len(), 16);
     }
 
     proptest! {
@@ -210,20 +210,17 @@ mod tests {
             let edges = ends.into_iter().filter(|(a, b)| a < b).enumerate();
             let ends: Vec<_> =
                 edges.map(|(i, (a, b))| if turned >> i & 1 == 1 { [b, a] } else { [a, b] }).collect();
-            let (mesh, segments) = (points(12), segments(&ends));
-            let chains = chain(&mesh, &segments);
+            let segments = segments(&ends);
+            let chains = chain(around, &segments);
             let mut found = Vec::new();
             for chain in &chains {
-                let extra = usize::from(!chain.closed);
-                prop_assert_eq!(chain.vertices.len(), chain.edges.len() + extra);
-                prop_assert!(!chain.closed || chain.edges.len() > 2);
-                found.extend(chain.segments());
+                prop_assert!(!chain.closed || chain.segments.len() > 2);
+                found.extend(chain.segments.iter().copied());
             }
-            // Joints share vertices, because each segment is found with its own ends.
             let sorted = |segments: &[Segment]| {
                 let mut all: Vec<_> = segments
                     .iter()
-                    .map(|&Segment { ends: [a, b], edge }| (edge, a.min(b), a.max(b)))
+                    .map(|&Segment { ends: [a, b], edge, .. }| (edge, a.min(b), a.max(b)))
                     .collect();
                 all.sort_unstable();
                 all
@@ -232,14 +229,15 @@ mod tests {
             // Below the limit, at most one line ends at a vertex for want of a partner.
             let mut ending = [0; 12];
             for chain in chains.iter().filter(|chain| !chain.closed) {
-                ending[chain.vertices[0] as usize] += 1;
-                ending[chain.vertices[chain.vertices.len() - 1] as usize] += 1;
+                let along = points(chain);
+                ending[along[0] as usize] += 1;
+                ending[along[along.len() - 1] as usize] += 1;
             }
             prop_assert!(ending.iter().all(|&count| count < 2));
             // The order of the input is no order of the output.
             let mut reversed = segments.clone();
             reversed.reverse();
-            prop_assert_eq!(super::chain(&mesh, &reversed), chains);
+            prop_assert_eq!(super::chain(around, &reversed), chains);
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Everything that is on the page, and how to ink it.
 
 use drypoint_mesh::Mesh;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+#[cfg(feature = "visibility")]
+use rayon::prelude::*;
 
 use crate::specks::specks;
-use crate::trace::{self, IsHidden};
-use crate::{Camera, Chain, Color, LineClass, Page, Run, Segments, VisibilityParams, chain};
+use crate::trace;
+use crate::{Camera, Chain, Color, Label, LineClass, Page, Run, Segments, VisibilityParams, chain};
 
 /// The lines of one view, projected, by class.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +18,8 @@ pub struct Drawing {
     pub layers: Vec<Layer>,
     /// Under the lines, in the order in which they are inked.
     pub areas: Vec<Area>,
+    /// What runs belong to: of [`Drawing::label`].
+    pub labels: Vec<Label>,
 }
 
 /// The lines of one class.
@@ -25,7 +29,7 @@ pub struct Layer {
     pub class: LineClass,
     /// Polylines on the mesh.
     pub chains: usize,
-    /// Edges in them.
+    /// Edges in them, or pairs of faces that cross.
     pub segments: usize,
     /// What of them is on the page, visible or hidden, chain by chain.
     pub runs: Vec<Run>,
@@ -52,16 +56,21 @@ impl Layer {
 }
 
 impl Drawing {
-    /// Chains and projects `segments`. Nothing hides anything: a view through glass.
+    /// Chains and projects `segments`, which are lines of `mesh`. Nothing hides anything: a view
+    /// through glass.
     pub fn through_glass(mesh: &Mesh, segments: &Segments, camera: &Camera) -> Self {
         // A single sample per segment, which sees everything.
         let params =
             VisibilityParams { step: f64::INFINITY, drop_specks: 0.0, ..Default::default() };
-        Self::trace(mesh, segments, camera, &params, &mut |_, _| false)
+        let position = |end| segments.position(mesh, end);
+        Self::trace(segments, camera, &params, position, |chains| {
+            let seen = |chain| trace::runs(position, chain, camera, &params, &mut |_, _| false);
+            chains.iter().flat_map(seen).collect()
+        })
     }
 
-    /// Chains and projects `segments`, and finds what of them is visible. About two lines of sight
-    /// per segment and one per pixel, of a microsecond or two each.
+    /// Chains and projects `segments`, and finds what of them is visible, on all threads. About two
+    /// lines of sight per segment and one per pixel, of a microsecond or two each.
     #[cfg(feature = "visibility")]
     pub fn new(
         occluders: &crate::Occluders<'_>,
@@ -69,25 +78,30 @@ impl Drawing {
         camera: &Camera,
         params: &VisibilityParams,
     ) -> Self {
-        let mut sightlines = occluders.sightlines(camera.viewpoint());
-        Self::trace(occluders.mesh(), segments, camera, params, &mut |ends, fraction| {
-            sightlines.set_edge(ends);
-            sightlines.is_hidden(fraction)
+        let position = |end| segments.position(occluders.mesh(), end);
+        Self::trace(segments, camera, params, position, |chains| {
+            let sightlines = || occluders.sightlines(camera.viewpoint());
+            let runs = chains.par_iter().map_init(sightlines, |sightlines, chain| {
+                trace::runs(position, chain, camera, params, &mut |segment, fraction| {
+                    sightlines.set_segment(segment.ends, segment.ends.map(position));
+                    sightlines.is_hidden(fraction)
+                })
+            });
+            runs.collect::<Vec<_>>().into_iter().flatten().collect()
         })
     }
 
     fn trace(
-        mesh: &Mesh,
         segments: &Segments,
         camera: &Camera,
         params: &VisibilityParams,
-        is_hidden: &mut IsHidden<'_>,
+        position: impl Fn(u32) -> DVec3 + Copy,
+        runs_of: impl Fn(&[Chain]) -> Vec<Run>,
     ) -> Self {
         let mut layers = LineClass::ALL.map(|class| {
             let segments = segments.of(class);
-            let chains = chain(mesh, segments);
-            let mut runs_of = |chain: &Chain| trace::runs(mesh, chain, camera, params, is_hidden);
-            let runs = chains.iter().flat_map(&mut runs_of).collect();
+            let chains = chain(position, segments);
+            let runs = runs_of(&chains);
             Layer { class, chains: chains.len(), segments: segments.len(), runs }
         });
         let runs: Vec<&Run> = layers.iter().flat_map(|layer| &layer.runs).collect();
@@ -95,11 +109,12 @@ impl Drawing {
         for layer in &mut layers {
             layer.runs.retain(|_| !is_speck.next().unwrap_or(false));
         }
-        Self { page: camera.page(), layers: layers.into(), areas: Vec::new() }
+        let page = camera.page();
+        Self { page, layers: layers.into(), areas: Vec::new(), labels: Vec::new() }
     }
 
-    /// The layers and runs in the order in which they are inked: hidden lines first, then creases
-    /// under boundaries under contours.
+    /// The layers and runs in the order in which they are inked: hidden lines first, and of
+    /// the classes the last first, so that contours are on top.
     #[cfg(any(feature = "svg", feature = "png"))]
     pub(crate) fn inked(&self, style: &Style) -> impl Iterator<Item = (&Layer, bool, Vec<&Run>)> {
         let hidden = (style.hidden != HiddenLines::None).then_some(false);

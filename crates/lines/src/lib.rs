@@ -19,7 +19,8 @@
 //! // Which edges to draw: the contours of this view, and sharp creases.
 //! let mut contours = Vec::new();
 //! contour_edges(&mesh, &adjacency, camera.viewpoint(), EdgeFilter::Convex, &mut contours);
-//! let options = LineOptions { boundary: true, crease_angle: Some(0.5) };
+//! let options =
+//!     LineOptions { boundary: true, crease_angle: Some(0.5), ..Default::default() };
 //! let segments = Segments::new(&mesh, &adjacency, &contours, &options);
 //!
 //! // What of them is visible. The occluders serve any number of views.
@@ -37,13 +38,15 @@
 //!
 //! 1. A [`Camera`] is a viewpoint with a lens and a [`Page`]. It is placed by hand, or fitted to
 //!    points exactly. Its [`Camera::viewpoint`] is what contours are extracted for.
-//! 2. [`Segments`] sorts edges by why they are drawn ([`LineClass`]), each once.
-//! 3. [`chain`] joins them into polylines at equal vertices.
+//! 2. [`Segments`] sorts lines by why they are drawn ([`LineClass`]), each once: edges, and the
+//!    [`Intersections`] of surfaces, which are found once for all views.
+//! 3. [`chain`] joins them into polylines at equal ends.
 //! 4. [`Occluders`] finds what is in front of a point, [`Drawing`] walks every chain at steps of a
 //!    pixel and finds the ends of its visible [`Run`]s by bisection. All in f64, with exact
 //!    predicates where the surface is near: a line never hides behind its own faces, and there is
 //!    no offset to choose.
-//! 5. Where faces are to be told apart, [`tinted_areas`] finds what of them is visible.
+//! 5. Where lines are to be told apart, [`Drawing::label`] says which part and which material each
+//!    belongs to; where faces are, [`tinted_areas`] finds what of them is visible.
 //! 6. [`to_svg`] and [`to_png`] ink areas and runs in a [`Style`].
 //!
 //! The same input gives the same output, to the byte.
@@ -59,7 +62,8 @@
 //!
 //! All are on by default. Without `visibility` there is [`Drawing::through_glass`].
 //!
-//! - `visibility`: [`Occluders`], [`Drawing::new`], [`tinted_areas`] (crates `obvhs` and `robust`).
+//! - `visibility`: [`Occluders`], [`Drawing::new`], [`Intersections::new`], [`tinted_areas`] (crates
+//!   `obvhs`, `rayon` and `robust`).
 //! - `svg`: [`to_svg`] (crate `svg`).
 //! - `png`: [`to_png`] (crate `tiny-skia`).
 //!
@@ -71,10 +75,15 @@ mod areas;
 mod camera;
 mod camera_error;
 mod chain;
+mod class;
 mod color;
+mod disjoint;
 mod drawing;
+mod face_names;
 mod filter;
 mod fit;
+mod intersections;
+mod labels;
 #[cfg(feature = "visibility")]
 mod occluders;
 mod page;
@@ -93,15 +102,19 @@ pub use areas::tinted_areas;
 pub use camera::Camera;
 pub use camera_error::CameraError;
 pub use chain::{Chain, chain};
+pub use class::{LineClass, LineOptions};
 pub use color::Color;
 pub use drawing::{Area, Drawing, HiddenLines, Layer, Style, Tint};
+pub use face_names::FaceNames;
 pub use filter::filter_for_drawing;
+pub use intersections::Intersections;
+pub use labels::Label;
 #[cfg(feature = "visibility")]
 pub use occluders::Occluders;
 pub use page::Page;
 #[cfg(feature = "png")]
 pub use png::{PngError, to_png};
-pub use segments::{LineClass, LineOptions, Segment, Segments};
+pub use segments::{Segment, Segments};
 #[cfg(feature = "svg")]
 pub use svg::to_svg;
 pub use trace::{Run, VisibilityParams};

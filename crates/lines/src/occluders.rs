@@ -31,10 +31,10 @@ use robust::{Coord3D, orient3d};
 /// A sample and a triangle's plane nearer to each other than this many f32 steps of their largest
 /// coordinate are coplanar. A corner rounded to f32 is off by up to 0.9 such steps, and a long
 /// triangle carries that on.
-const COPLANAR_ULPS: f64 = 4.0;
+pub(crate) const COPLANAR_ULPS: f64 = 4.0;
 
 /// Step between f32 near 1.
-const ULP: f64 = f32::EPSILON as f64;
+pub(crate) const ULP: f64 = f32::EPSILON as f64;
 
 /// Rounding of the slab test: 3 operations on either side, plus that of the direction.
 const SLAB: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -147,9 +147,16 @@ enum Hit {
 
 impl Sightlines<'_> {
     /// Takes up the next edge, between two welded vertices.
-    pub(crate) fn set_edge(&mut self, ends: [u32; 2]) {
+    fn set_edge(&mut self, ends: [u32; 2]) {
+        self.set_segment(ends, ends.map(|v| self.occluders.point(v)));
+    }
+
+    /// Takes up the next segment, between two points; `ends` says which welded vertices they are, by
+    /// numbers of none where they are none. Faces in which it lies do not hide it: if not by their
+    /// corners, then because their planes pass all of it within [`COPLANAR_ULPS`].
+    pub(crate) fn set_segment(&mut self, ends: [u32; 2], points: [DVec3; 2]) {
         self.ends = ends;
-        self.points = ends.map(|v| self.occluders.point(v));
+        self.points = points;
         self.eyes = self.points.map(|p| eye_from(p, self.viewpoint, self.occluders.diagonal));
     }
 
@@ -291,7 +298,7 @@ fn is_between([a, b, c]: [DVec3; 3], from: DVec3, eye: DVec3) -> bool {
 }
 
 /// Six times the volume of a tetrahedron, with its exact sign.
-fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+pub(crate) fn orientation(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
     orient3d(a, b, c, d)
 }

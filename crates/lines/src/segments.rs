@@ -1,65 +1,52 @@
-//! Which edges are drawn, and as what.
+//! Which lines are drawn, and as what.
 
 use std::f64::consts::FRAC_PI_2;
 
-use drypoint_mesh::{EdgeClass, EdgeId, Mesh, MeshAdjacency, dihedral_angle};
+use drypoint_mesh::{EdgeClass, EdgeId, HalfEdge, Mesh, MeshAdjacency, dihedral_angle};
+use glam::DVec3;
 
-/// Why an edge is drawn. An edge with several reasons is drawn once, for the first of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum LineClass {
-    /// One face towards the viewer, one away.
-    Contour,
-    /// The surface ends: an edge of one face.
-    Boundary,
-    /// The surface bends sharply, in any view.
-    Crease,
+use crate::{LineClass, LineOptions};
+
+/// A straight piece of line: an edge of the mesh, or a piece of where two of its faces cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Its ends, which [`Segments::position`] places. Those of an edge are welded vertices, in the
+    /// direction of the wing; others are numbered from the number of vertices on.
+    pub ends: [u32; 2],
+    /// The faces that it lies in: those on the left and the right of an edge, of a boundary edge one
+    /// of them twice; or the two that cross.
+    pub faces: [u32; 2],
+    /// The edge; the first of its wings if it is non-manifold. `None` where faces cross.
+    pub edge: Option<EdgeId>,
 }
 
-impl LineClass {
-    /// Every class, in the order in which one wins over the next.
-    pub const ALL: [Self; 3] = [Self::Contour, Self::Boundary, Self::Crease];
-
-    /// `contour`, `boundary` or `crease`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Contour => "contour",
-            Self::Boundary => "boundary",
-            Self::Crease => "crease",
-        }
+impl Segment {
+    fn along(adjacency: &MeshAdjacency, edge: EdgeId) -> Self {
+        let wing = adjacency.wing(edge);
+        let [left, right] = adjacency.sides(edge);
+        let right = if right == HalfEdge::NONE { left } else { right };
+        let faces = [left, right].map(HalfEdge::triangle);
+        Self { ends: [wing.tail, wing.head], faces, edge: Some(edge) }
     }
 }
 
-/// Which lines to draw beside the contours.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LineOptions {
-    /// Draws edges of one face.
-    pub boundary: bool,
-    /// Draws interior edges whose dihedral angle is at least this, in radians, either way. 0 draws
-    /// all that are not flat.
-    pub crease_angle: Option<f64>,
-}
-
-/// A straight piece of line: an edge of the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Segment {
-    /// Its ends as welded vertices, in the direction of the wing.
-    pub ends: [u32; 2],
-    /// The edge; the first of its wings if it is non-manifold.
-    pub edge: EdgeId,
-}
-
-/// The edges to draw in one view, by class. None twice, none of length zero, each list by edge id.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// The lines to draw in one view, by class: edges by id and none twice, then what is no edge.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Segments {
-    contour: Vec<Segment>,
-    boundary: Vec<Segment>,
-    crease: Vec<Segment>,
+    /// In the order of [`LineClass::ALL`].
+    by_class: [Vec<Segment>; LineClass::ALL.len()],
+    /// Number of vertices.
+    first_point: u32,
+    /// The ends that are no vertices.
+    points: Vec<DVec3>,
 }
 
 impl Segments {
-    /// Takes `contours` as they are, in any order, and adds boundary edges and creases as `options`
-    /// ask. An edge is drawn once: as a contour rather than as a boundary rather than as a crease,
-    /// and the wings of a non-manifold edge are one line. Linear but for a sort of what is drawn.
+    /// Takes `contours` as they are, in any order, and adds the other lines as `options` ask. An
+    /// edge is drawn once, for the first reason in the order of [`LineClass::ALL`], and the wings of
+    /// a non-manifold edge are one line; none has length zero. Intersections that run along an edge
+    /// which is drawn are left out. Linear but for a sort of what is drawn, and a search in the runs
+    /// of materials for each edge.
     ///
     /// At a non-manifold edge a face and its own copy count as one: they are a contour from
     /// everywhere, but a surface that is stored twice should look like one that is stored once.
@@ -72,22 +59,12 @@ impl Segments {
         mesh: &Mesh,
         adjacency: &MeshAdjacency,
         contours: &[EdgeId],
-        options: &LineOptions,
+        options: &LineOptions<'_>,
     ) -> Self {
-        let others = options.boundary || options.crease_angle.is_some();
-        let candidates = others.then(|| adjacency.edge_ids()).into_iter().flatten();
-        let others = candidates.filter_map(|edge| match (adjacency.class(edge), options) {
-            (EdgeClass::Boundary, options) => {
-                options.boundary.then_some((LineClass::Boundary, edge))
-            }
-            (class, LineOptions { crease_angle: Some(least), .. }) => {
-                let angle = dihedral_angle(mesh, &adjacency.wing(edge)).abs();
-                // A flat edge bends by 0, or by π where the surface folds back upon itself.
-                let bends = class != EdgeClass::Flat || angle > FRAC_PI_2;
-                (bends && angle >= *least).then_some((LineClass::Crease, edge))
-            }
-            _ => None,
-        });
+        let looked_at = LineOptions { intersections: None, ..*options } != LineOptions::default();
+        let candidates = looked_at.then(|| adjacency.edge_ids()).into_iter().flatten();
+        let others =
+            candidates.filter_map(|edge| Some((class_of(mesh, adjacency, edge, options)?, edge)));
         let is_copy = |edge: EdgeId| {
             let wing = adjacency.wing(edge);
             adjacency.class(edge) == EdgeClass::NonManifold && wing.left == wing.right
@@ -101,29 +78,66 @@ impl Segments {
             .collect();
         lines.sort_unstable();
         lines.dedup_by_key(|line| line.0);
-        lines.sort_unstable_by_key(|line| line.2);
 
-        let mut segments = Self::default();
+        let mut segments = Self { first_point: vertex_count(mesh), ..Self::default() };
+        if let Some(intersections) = options.intersections {
+            let is_drawn = |edge| lines.binary_search_by_key(&edge, |line| line.0).is_ok();
+            let apart = intersections.segments(segments.first_point);
+            let apart = apart.filter(|(_, edges)| !edges.iter().flatten().any(|&e| is_drawn(e)));
+            segments.by_class[LineClass::Intersection as usize].extend(apart.map(|(s, _)| s));
+            segments.points = intersections.points().to_vec();
+        }
+        lines.sort_unstable_by_key(|line| line.2);
         for (_, class, edge) in lines {
-            let wing = adjacency.wing(edge);
-            let segment = Segment { ends: [wing.tail, wing.head], edge };
-            match class {
-                LineClass::Contour => segments.contour.push(segment),
-                LineClass::Boundary => segments.boundary.push(segment),
-                LineClass::Crease => segments.crease.push(segment),
-            }
+            segments.by_class[class as usize].push(Segment::along(adjacency, edge));
         }
         segments
     }
 
-    /// The segments of one class, by edge id.
+    /// The segments of one class: edges by id, intersections by the faces that cross.
     pub fn of(&self, class: LineClass) -> &[Segment] {
-        match class {
-            LineClass::Contour => &self.contour,
-            LineClass::Boundary => &self.boundary,
-            LineClass::Crease => &self.crease,
+        &self.by_class[class as usize]
+    }
+
+    /// Where an end of a segment is.
+    ///
+    /// # Panics
+    /// If `end` is not one of a segment, or `mesh` another than the lines were found in.
+    pub fn position(&self, mesh: &Mesh, end: u32) -> DVec3 {
+        match end.checked_sub(self.first_point) {
+            Some(point) => self.points[point as usize],
+            None => mesh.position(end).as_dvec3(),
         }
     }
+}
+
+/// The number of vertices, which triangles index.
+fn vertex_count(mesh: &Mesh) -> u32 {
+    u32::try_from(mesh.positions().len()).unwrap_or(u32::MAX)
+}
+
+/// Why an edge is drawn in any view.
+fn class_of(
+    mesh: &Mesh,
+    adjacency: &MeshAdjacency,
+    edge: EdgeId,
+    options: &LineOptions<'_>,
+) -> Option<LineClass> {
+    let class = adjacency.class(edge);
+    if class == EdgeClass::Boundary {
+        return options.boundary.then_some(LineClass::Boundary);
+    }
+    if let Some(materials) = options.materials {
+        let [left, right] = adjacency.sides(edge).map(|side| materials.of(side.triangle()));
+        if left != right {
+            return Some(LineClass::Material);
+        }
+    }
+    let least = options.crease_angle?;
+    let angle = dihedral_angle(mesh, &adjacency.wing(edge)).abs();
+    // A flat edge bends by 0, or by π where the surface folds back upon itself.
+    let bends = class != EdgeClass::Flat || angle > FRAC_PI_2;
+    (bends && angle >= least).then_some(LineClass::Crease)
 }
 
 #[cfg(test)]
@@ -132,23 +146,37 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::FaceNames;
 
-    const ALL: LineOptions = LineOptions { boundary: true, crease_angle: Some(1.0) };
+    const ALL: LineOptions<'_> = LineOptions {
+        boundary: true,
+        crease_angle: Some(1.0),
+        materials: None,
+        intersections: None,
+    };
 
-    /// Counts of contours, boundaries and creases, seen from (9, 9, 9).
+    /// Counts of contours, boundaries, creases and borders of materials, seen from (9, 9, 9).
     #[track_caller]
-    fn check(mesh: &Mesh, options: LineOptions, expected: [usize; 3]) {
+    fn check(mesh: &Mesh, options: LineOptions<'_>, expected: [usize; 4]) {
         let adjacency = MeshAdjacency::new(mesh);
         let mut contours = Vec::new();
         let viewpoint = Viewpoint::at(DVec3::splat(9.0));
         contour_edges(mesh, &adjacency, viewpoint, EdgeFilter::All, &mut contours);
         let segments = Segments::new(mesh, &adjacency, &contours, &options);
-        assert_eq!(LineClass::ALL.map(|class| segments.of(class).len()), expected);
+        let counts =
+            [LineClass::Contour, LineClass::Boundary, LineClass::Crease, LineClass::Material];
+        assert_eq!(counts.map(|class| segments.of(class).len()), expected);
         let mut drawn: Vec<[u32; 2]> = Vec::new();
         for class in LineClass::ALL {
             assert!(segments.of(class).is_sorted_by_key(|segment| segment.edge));
-            for &Segment { ends, edge } in segments.of(class) {
-                assert_eq!(ends, [adjacency.wing(edge).tail, adjacency.wing(edge).head]);
+            for &Segment { ends, faces, edge } in segments.of(class) {
+                let wing = adjacency.wing(edge.unwrap());
+                assert_eq!(ends, [wing.tail, wing.head]);
+                for face in faces {
+                    let corners = mesh.triangles()[face as usize];
+                    let welded = corners.map(|v| adjacency.representatives()[v as usize]);
+                    assert!(ends.iter().all(|end| welded.contains(end)));
+                }
                 assert_ne!(mesh.position(ends[0]), mesh.position(ends[1]));
                 drawn.push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
             }
@@ -162,20 +190,20 @@ mod tests {
     #[test]
     fn an_edge_is_drawn_once_for_its_first_reason() {
         let cube = shapes::cube();
-        check(&cube, LineOptions::default(), [6, 0, 0]);
-        check(&cube, ALL, [6, 0, 6]);
-        check(&cube, LineOptions { crease_angle: Some(0.0), ..ALL }, [6, 0, 6]);
-        check(&cube, LineOptions { crease_angle: Some(1.6), ..ALL }, [6, 0, 0]);
-        check(&shapes::one_triangle(), ALL, [0, 3, 0]);
-        check(&shapes::one_triangle(), LineOptions { boundary: false, ..ALL }, [0, 0, 0]);
-        check(&shapes::empty(), ALL, [0, 0, 0]);
+        check(&cube, LineOptions::default(), [6, 0, 0, 0]);
+        check(&cube, ALL, [6, 0, 6, 0]);
+        check(&cube, LineOptions { crease_angle: Some(0.0), ..ALL }, [6, 0, 6, 0]);
+        check(&cube, LineOptions { crease_angle: Some(1.6), ..ALL }, [6, 0, 0, 0]);
+        check(&shapes::one_triangle(), ALL, [0, 3, 0, 0]);
+        check(&shapes::one_triangle(), LineOptions { boundary: false, ..ALL }, [0, 0, 0, 0]);
+        check(&shapes::empty(), ALL, [0, 0, 0, 0]);
     }
 
     #[test]
     fn several_wings_are_one_line() {
         // Of the 23 edges the common one parts the front of one cube from the back of the other.
-        check(&shapes::cubes_sharing_an_edge(), ALL, [13, 0, 10]);
-        check(&shapes::book(5), ALL, [1, 10, 0]);
+        check(&shapes::cubes_sharing_an_edge(), ALL, [13, 0, 10, 0]);
+        check(&shapes::book(5), ALL, [1, 10, 0, 0]);
     }
 
     #[test]
@@ -188,6 +216,32 @@ mod tests {
 
     #[test]
     fn no_line_has_length_zero() {
-        check(&shapes::zero_area_fan(), ALL, [0, 10, 0]);
+        check(&shapes::zero_area_fan(), ALL, [0, 10, 0, 0]);
+    }
+
+    #[test]
+    fn two_materials_have_a_border() {
+        let cube = shapes::cube();
+        let is_top = |face: u32| cube.corners(face).iter().all(|p| p.z == 1.0);
+        let top = FaceNames::new((0..12).filter(|&f| is_top(f)).map(|f| ("red", f..f + 1)));
+        let materials = LineOptions { materials: Some(&top), ..LineOptions::default() };
+        let adjacency = MeshAdjacency::new(&cube);
+        let alone = Segments::new(&cube, &adjacency, &[], &materials);
+        assert_eq!(alone.of(LineClass::Material).len(), 4);
+        // Contours come first, creases last.
+        check(&cube, materials, [6, 0, 0, 2]);
+        check(&cube, LineOptions { materials: Some(&top), ..ALL }, [6, 0, 4, 2]);
+        let one = FaceNames::new([("red", 0..6), ("red", 6..12)]);
+        check(&cube, LineOptions { materials: Some(&one), ..ALL }, [6, 0, 6, 0]);
+        // The spine of a book, and an edge between two faces in one plane.
+        let pages = FaceNames::new([("red", 0..4), ("blue", 4..5)]);
+        let materials = LineOptions { materials: Some(&pages), ..ALL };
+        check(&shapes::book(5), materials, [1, 10, 0, 0]);
+        let book = shapes::book(5);
+        let unseen = Segments::new(&book, &MeshAdjacency::new(&book), &[], &materials);
+        assert_eq!(unseen.of(LineClass::Material).len(), 1);
+        let grid = shapes::open_grid(2);
+        let halves = FaceNames::new([("", 0..1), ("blue", 1..2)]);
+        check(&grid, LineOptions { materials: Some(&halves), ..ALL }, [0, 4, 0, 1]);
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::Run;
+use crate::disjoint::DisjointSets;
 
 /// Side of the cells in which runs meet, in pixels: runs that come nearer than one side touch,
 /// those two sides apart do not.
@@ -18,7 +19,7 @@ const CELL: f64 = 1.0;
 pub(crate) fn specks(runs: &[&Run], limit: f64) -> Vec<bool> {
     let lengths: Vec<f64> = runs.iter().map(|run| run.length()).collect();
     let is_short = |i: usize| runs[i].visible && lengths[i] < limit;
-    let mut groups = Groups { parents: (0..runs.len()).collect() };
+    let mut groups = DisjointSets::new(runs.len());
     let mut owners: HashMap<[i64; 2], usize> = HashMap::new();
     for index in (0..runs.len()).filter(|&i| is_short(i)) {
         for_each_cell(runs[index], |[x, y]| {
@@ -52,7 +53,7 @@ pub(crate) fn specks(runs: &[&Run], limit: f64) -> Vec<bool> {
 /// Visits the cells along a run, at steps of half a cell, some more than once.
 fn for_each_cell(run: &Run, mut visit: impl FnMut([i64; 2])) {
     let next = run.points.iter().cycle().skip(1);
-    for ((&a, &b), _) in run.points.iter().zip(next).zip(&run.edges) {
+    for ((&a, &b), _) in run.points.iter().zip(next).zip(&run.segments) {
         let steps = (a.distance(b) / (0.5 * CELL)).ceil().max(1.0);
         for step in (0..).map(f64::from).take_while(|&step| step <= steps) {
             let cell = (a.lerp(b, step / steps) / CELL).floor();
@@ -62,39 +63,24 @@ fn for_each_cell(run: &Run, mut visit: impl FnMut([i64; 2])) {
     }
 }
 
-/// Disjoint sets; the root is the lowest index, so nothing depends on the order of the joins.
-struct Groups {
-    parents: Vec<usize>,
-}
-
-impl Groups {
-    fn root(&mut self, mut index: usize) -> usize {
-        while self.parents[index] != index {
-            self.parents[index] = self.parents[self.parents[index]];
-            index = self.parents[index];
-        }
-        index
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b)] = a.min(b);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use drypoint_mesh::EdgeId;
     use glam::DVec2;
 
     use super::*;
+    use crate::Segment;
 
     fn run(points: &[[f64; 2]], visible: bool) -> Run {
         Run {
             points: points.iter().map(|&p| DVec2::from_array(p)).collect(),
-            edges: (1..).map(EdgeId).take(points.len() - 1).collect(),
+            segments: vec![
+                Segment { ends: [0, 1], faces: [0, 0], edge: Some(EdgeId(0)) };
+                points.len() - 1
+            ],
             closed: false,
             visible,
+            label: None,
         }
     }
 

@@ -10,10 +10,12 @@ use crate::{Area, Color, Drawing, Layer, Run, Style};
 
 /// `drawing` as a text in SVG 1.1, for browsers, Inkscape and plotters, under a `title`.
 ///
-/// One `<g class="contour">`, `boundary` or `crease` per class, those of hidden lines with the class
-/// `hidden` beside it; a class without lines has no group. In it one `<path>` per run, with the
-/// edges it runs along in `data-edges`, by id. Pixels with two decimals; a run that is shorter is
-/// left out.
+/// One `<g class="contour">` or other name of a [`LineClass`](crate::LineClass) per class, those of
+/// hidden lines with the class `hidden` beside it; a class without lines has no group. In it one
+/// `<path>` per run, with the edges it runs along in `data-edges`, by id, or with the pairs of faces
+/// that cross there in `data-faces`, as `3,17 3,18`. Of a drawing with labels, `data-part` and
+/// `data-material` name what it belongs to, unless that has no name. Pixels with two decimals; a run
+/// that is shorter is left out.
 ///
 /// Areas lie under the lines in a `<g class="areas">`, one `<path>` each with the name of its tint
 /// as its class.
@@ -34,7 +36,7 @@ pub fn to_svg(drawing: &Drawing, style: &Style, title: &str) -> String {
         document = document.add(drawing.areas.iter().map(area).fold(group, Group::add));
     }
     for (layer, visible, runs) in drawing.inked(style) {
-        let paths: Vec<Path> = runs.into_iter().filter_map(path).collect();
+        let paths: Vec<Path> = runs.into_iter().filter_map(|run| path(drawing, run)).collect();
         if !paths.is_empty() {
             let group = group(layer, visible, style);
             document = document.add(paths.into_iter().fold(group, Group::add));
@@ -86,7 +88,7 @@ fn area(area: &Area) -> Path {
 }
 
 /// A run as a path; none if all its points round to one.
-fn path(run: &Run) -> Option<Path> {
+fn path(drawing: &Drawing, run: &Run) -> Option<Path> {
     let mut points: Vec<[Hundredths; 2]> = run.points.iter().map(rounded).collect();
     points.dedup();
     if run.closed && points.first() == points.last() {
@@ -95,8 +97,25 @@ fn path(run: &Run) -> Option<Path> {
     if points.len() < 2 {
         return None;
     }
-    let edges: Vec<String> = run.edges.iter().map(|edge| edge.0.to_string()).collect();
-    Some(Path::new().set("d", data(&points, run.closed)).set("data-edges", edges.join(" ")))
+    let mut path = Path::new().set("d", data(&points, run.closed));
+    let edges: Vec<_> =
+        run.segments.iter().filter_map(|s| s.edge).map(|edge| edge.0.to_string()).collect();
+    if edges.is_empty() {
+        let pairs: Vec<_> =
+            run.segments.iter().map(|s| format!("{},{}", s.faces[0], s.faces[1])).collect();
+        path = path.set("data-faces", pairs.join(" "));
+    } else {
+        path = path.set("data-edges", edges.join(" "));
+    }
+    if let Some(label) = drawing.label_of(run) {
+        for (name, value) in [("data-part", &label.part), ("data-material", &label.material)] {
+            let value = without_control_characters(value);
+            if !value.is_empty() {
+                path = path.set(name, value);
+            }
+        }
+    }
+    Some(path)
 }
 
 /// A polyline as path data.

@@ -1,7 +1,6 @@
 //! Chains to runs: what of a chain is on the page, and what of that is visible.
 
-use drypoint_mesh::{EdgeId, Mesh};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::camera::Clipped;
 use crate::{Camera, Chain, Segment};
@@ -41,26 +40,29 @@ impl Default for VisibilityParams {
 pub struct Run {
     /// Pixels from the upper left corner of the page, y down. At least two.
     pub points: Vec<DVec2>,
-    /// The edge between each point and the next; of a closed run also from the last to the first.
-    pub edges: Vec<EdgeId>,
+    /// The segment between each point and the next, in the direction of the run; of a closed run also
+    /// from the last to the first.
+    pub segments: Vec<Segment>,
     /// The last point is joined to the first.
     pub closed: bool,
     /// Nothing is in front of it.
     pub visible: bool,
+    /// What it belongs to, as an index into [`Drawing::labels`](crate::Drawing::labels), if that was
+    /// asked for.
+    pub label: Option<u32>,
 }
 
 impl Run {
     /// Pixels along the run.
     pub fn length(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
-        self.points.iter().zip(next).zip(&self.edges).map(|((a, b), _)| a.distance(*b)).sum()
+        self.points.iter().zip(next).zip(&self.segments).map(|((a, b), _)| a.distance(*b)).sum()
     }
 }
 
 /// A part of one segment of a chain that is on the page.
 struct Piece {
-    ends: [u32; 2],
-    edge: EdgeId,
+    segment: Segment,
     clipped: Clipped,
     /// Goes on where the piece before ends.
     joined: bool,
@@ -84,18 +86,18 @@ struct Stretch {
     length: f64,
 }
 
-/// Answers whether the point at this fraction of the edge between two vertices is hidden.
-pub(crate) type IsHidden<'a> = dyn FnMut([u32; 2], f64) -> bool + 'a;
+/// Answers whether the point at this fraction of a segment is hidden.
+pub(crate) type IsHidden<'a> = dyn FnMut(&Segment, f64) -> bool + 'a;
 
 /// The runs of a chain in its order. What is off the page is in none.
 pub(crate) fn runs(
-    mesh: &Mesh,
+    position: impl Fn(u32) -> DVec3,
     chain: &Chain,
     camera: &Camera,
     params: &VisibilityParams,
     is_hidden: &mut IsHidden<'_>,
 ) -> Vec<Run> {
-    let pieces = pieces(mesh, chain, camera);
+    let pieces = pieces(position, chain, camera);
     let is_ring = pieces.iter().all(|piece| piece.joined);
     let mut spans = spans(&pieces, params, is_hidden);
     if is_ring {
@@ -120,21 +122,21 @@ pub(crate) fn runs(
 
 /// The parts of the chain's segments that are on the page. All are joined only in a closed chain
 /// that is on the page as a whole; else the first is not.
-fn pieces(mesh: &Mesh, chain: &Chain, camera: &Camera) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::with_capacity(chain.edges.len());
+fn pieces(position: impl Fn(u32) -> DVec3, chain: &Chain, camera: &Camera) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::with_capacity(chain.segments.len());
     let mut goes_on = false;
-    for Segment { ends, edge } in chain.segments() {
-        let [a, b] = ends.map(|v| mesh.position(v).as_dvec3());
+    for &segment in &chain.segments {
+        let [a, b] = segment.ends.map(&position);
         let Some(clipped) = camera.clip(a, b) else {
             goes_on = false;
             continue;
         };
         let joined = goes_on && clipped.range[0] == 0.0;
         goes_on = clipped.range[1] == 1.0;
-        pieces.push(Piece { ends, edge, clipped, joined });
+        pieces.push(Piece { segment, clipped, joined });
     }
     if let Some(first) = pieces.first_mut() {
-        let is_start = first.edge == chain.edges[0] && first.clipped.range[0] == 0.0;
+        let is_start = first.segment == chain.segments[0] && first.clipped.range[0] == 0.0;
         first.joined = chain.closed && goes_on && is_start;
     }
     let start = pieces.iter().position(|piece| !piece.joined).unwrap_or(0);
@@ -146,7 +148,7 @@ fn pieces(mesh: &Mesh, chain: &Chain, camera: &Camera) -> Vec<Piece> {
 fn spans(pieces: &[Piece], params: &VisibilityParams, is_hidden: &mut IsHidden<'_>) -> Vec<Span> {
     let precision = params.precision.max(MIN_PRECISION);
     let mut is_hidden_at = |piece: &Piece, on_page: f64| {
-        is_hidden(piece.ends, piece.clipped.fraction_in_space(on_page))
+        is_hidden(&piece.segment, piece.clipped.fraction_in_space(on_page))
     };
     // First every piece by itself, at the middles of equal steps: never at a vertex, where what
     // hides the line is a matter of the direction one comes from.
@@ -249,14 +251,15 @@ fn run(pieces: &[Piece], stretch: &Stretch, closed: bool) -> Option<Run> {
     let first = stretch.spans.first()?;
     let mut run = Run {
         points: vec![at(first.piece, first.from)],
-        edges: vec![],
+        segments: vec![],
         closed,
         visible: stretch.visible,
+        label: None,
     };
     for spans in stretch.spans.chunk_by(|a, b| a.piece == b.piece) {
         let last = &spans[spans.len() - 1];
         run.points.push(at(last.piece, last.to));
-        run.edges.push(pieces[last.piece].edge);
+        run.segments.push(pieces[last.piece].segment);
     }
     if closed {
         run.points.pop();

@@ -15,7 +15,7 @@ fn draw(mesh: &Mesh, camera: &Camera) -> Drawing {
     let adjacency = MeshAdjacency::new(mesh);
     let mut contours = Vec::new();
     contour_edges(mesh, &adjacency, camera.viewpoint(), EdgeFilter::Convex, &mut contours);
-    let options = LineOptions { boundary: true, crease_angle: Some(0.5) };
+    let options = LineOptions { boundary: true, crease_angle: Some(0.5), ..Default::default() };
     let segments = Segments::new(mesh, &adjacency, &contours, &options);
     let occluders = Occluders::new(mesh, &adjacency);
     Drawing::new(&occluders, &segments, camera, &VisibilityParams::default())
@@ -124,7 +124,7 @@ fn a_picture_of_nothing_is_a_picture() {
     let page = Page { width: 65_535, height: 65_535, margin: 0.0 };
     let too_large = PngError::TooLarge { width: 65_535, height: 65_535 };
     assert_eq!(
-        to_png(&Drawing { page, layers: vec![], areas: vec![] }, &Style::default()),
+        to_png(&Drawing { page, layers: vec![], areas: vec![], labels: vec![] }, &Style::default()),
         Err(too_large)
     );
 }

@@ -129,14 +129,19 @@ fn contours(mesh: &Mesh, adjacency: &MeshAdjacency, camera: &Camera) -> Vec<Edge
     contours
 }
 
-fn draw(mesh: &Mesh, camera: &Camera, options: LineOptions, params: &VisibilityParams) -> Drawing {
+fn draw(mesh: &Mesh, camera: &Camera, options: LineOptions<'_>, params: &VisibilityParams) -> Drawing {
     let adjacency = MeshAdjacency::new(mesh);
     let contours = contours(mesh, &adjacency, camera);
     let segments = Segments::new(mesh, &adjacency, &contours, &options);
     Drawing::new(&Occluders::new(mesh, &adjacency), &segments, camera, params)
 }
 
-const EVERYTHING: LineOptions = LineOptions { boundary: true, crease_angle: Some(0.5) };
+const EVERYTHING: LineOptions<'_> = LineOptions {
+    boundary: true,
+    crease_angle: Some(0.5),
+    materials: None,
+    intersections: None,
+};
 
 fn lengths(drawing: &Drawing) -> [f64; 2] {
     let sum = |length: fn(&drypoint_lines::Layer) -> f64| drawing.layers.iter().map(length).sum();
@@ -246,7 +251,7 @@ fn the_contour_of_a_ball_is_one_visible_ring() {
             assert_eq!((layer.class, layer.chains, layer.runs.len()), (LineClass::Contour, 1, 1));
             let run = &layer.runs[0];
             assert!(run.closed && run.visible);
-            assert_eq!((run.points.len(), run.edges.len()), (layer.segments, layer.segments));
+            assert_eq!((run.points.len(), run.segments.len()), (layer.segments, layer.segments));
         }
     }
 }
@@ -346,13 +351,14 @@ fn beside_bar(
     let camera = Camera::orthographic(DVec3::Z, DVec3::ZERO, None, 10.0, PAGE).unwrap();
     let adjacency = MeshAdjacency::new(&mesh);
     let edge = adjacency.edge_ids().find(|&e| adjacency.wing(e).ends() == [4, 5]).unwrap();
-    let options = LineOptions { boundary: class == LineClass::Boundary, crease_angle: None };
+    let options = LineOptions { boundary: class == LineClass::Boundary, ..Default::default() };
     let contours = if class == LineClass::Contour { vec![edge] } else { vec![] };
     let segments = Segments::new(&mesh, &adjacency, &contours, &options);
     let drawing = Drawing::new(&Occluders::new(&mesh, &adjacency), &segments, &camera, params);
     let mut found = Vec::new();
     for run in drawing.layers.iter().flat_map(|layer| &layer.runs).filter(|run| run.visible) {
-        for (i, _) in run.edges.iter().enumerate().filter(|(_, e)| **e == edge) {
+        let along = run.segments.iter().map(|segment| segment.edge);
+        for (i, _) in along.enumerate().filter(|(_, e)| *e == Some(edge)) {
             let ends = [run.points[i], run.points[(i + 1) % run.points.len()]];
             let [a, b] = ends.map(|p| (p.x - 250.0) / 50.0);
             found.push([a.min(b), a.max(b)]);

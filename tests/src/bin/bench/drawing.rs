@@ -24,7 +24,7 @@ pub(crate) fn measure(
     let mut contours = Vec::new();
     let filter = filter_for_drawing(mesh, adjacency, camera.viewpoint());
     contour_edges(mesh, adjacency, camera.viewpoint(), filter, &mut contours);
-    let options = LineOptions { boundary: true, crease_angle: None };
+    let options = LineOptions { boundary: true, ..Default::default() };
     let segments = Segments::new(mesh, adjacency, &contours, &options);
     let extracted = seconds();
     let occluders = Occluders::new(mesh, adjacency);
