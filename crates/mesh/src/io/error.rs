@@ -53,6 +53,12 @@ pub enum ReadError {
     /// There is nothing to draw.
     #[error("has no faces")]
     NoFaces,
+    /// Every face uses a vertex that is NaN, infinite or beyond the range of f32.
+    #[error("has {count} faces, each with a vertex at no finite position")]
+    NoFiniteFaces {
+        /// How many there are.
+        count: usize,
+    },
     /// The parts are sound and the whole is not: too many triangles.
     #[error(transparent)]
     Mesh(#[from] MeshError),

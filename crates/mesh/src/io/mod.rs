@@ -26,11 +26,15 @@
     allow(dead_code, unused_variables, reason = "the readers that need it are not built")
 )]
 
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
+mod content;
 mod error;
+mod file;
 mod format;
 mod parts;
-#[cfg(any(feature = "obj", feature = "ply"))]
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod polygon;
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod text;
 
 #[cfg(feature = "gltf")]
@@ -49,7 +53,20 @@ pub use error::{Fault, Place, ReadError};
 pub use format::Format;
 pub use parts::{Dropped, Model, Part};
 
-/// Reads the mesh in a file.
+/// Bytes of a text, or of rows, that a thread reads at once: few enough that all threads have some of a
+/// file of a megabyte, and enough that handing them out costs nothing. What is read does not depend on it.
+const PIECE: usize = 1 << 18;
+
+/// How to read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// A vertex that is NaN, infinite or beyond the range of f32 is an error. Else it and the faces that
+    /// use it are left out and counted in [`Model::dropped`]; not so in glTF files, where it is always an
+    /// error.
+    pub strict: bool,
+}
+
+/// Reads the mesh in a file, and leaves out what is not finite.
 ///
 /// The format is that of the extension, in any case; content that is plainly of another format is
 /// refused. Buffers of a glTF file are looked for beside it. The file is read once, whole.
@@ -57,17 +74,25 @@ pub use parts::{Dropped, Model, Part};
 /// # Errors
 /// Whatever is wrong with the file, in one line.
 pub fn read(path: &Path) -> Result<Model, ReadError> {
+    read_with(path, &ReadOptions::default())
+}
+
+/// As [`read`], with options.
+///
+/// # Errors
+/// Whatever is wrong with the file, in one line.
+pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Model, ReadError> {
     // A missing file is the first thing to say, whatever its name.
     fs::metadata(path)?;
     let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
     let Some(format) = Format::of_extension(&extension) else {
         return Err(ReadError::UnknownExtension { extension });
     };
-    let bytes = fs::read(path)?;
+    let bytes = file::read(path)?;
     if let Some(content) = Format::of_content(&bytes).filter(|&content| content != format) {
         return Err(ReadError::WrongExtension { extension, content });
     }
-    parse_in(format, &bytes, path.parent())
+    parse_with(format, &bytes, path.parent(), options)
 }
 
 /// Reads the mesh in `bytes`, a whole file of the given format.
@@ -83,16 +108,29 @@ pub fn parse(format: Format, bytes: &[u8]) -> Result<Model, ReadError> {
 /// # Errors
 /// Whatever is wrong with the file or its buffers.
 pub fn parse_in(format: Format, bytes: &[u8], folder: Option<&Path>) -> Result<Model, ReadError> {
+    parse_with(format, bytes, folder, &ReadOptions::default())
+}
+
+/// As [`parse_in`], with options.
+///
+/// # Errors
+/// Whatever is wrong with the file or its buffers.
+pub fn parse_with(
+    format: Format,
+    bytes: &[u8],
+    folder: Option<&Path>,
+    options: &ReadOptions,
+) -> Result<Model, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::Empty);
     }
     match format {
         #[cfg(feature = "obj")]
-        Format::Obj => obj::parse(bytes),
+        Format::Obj => obj::parse(bytes, options),
         #[cfg(feature = "ply")]
-        Format::Ply => ply::parse(bytes),
+        Format::Ply => ply::parse(bytes, options),
         #[cfg(feature = "stl")]
-        Format::Stl => stl::parse(bytes),
+        Format::Stl => stl::parse(bytes, options),
         #[cfg(feature = "gltf")]
         Format::Gltf => gltf::parse(bytes, folder),
         #[cfg(not(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf")))]

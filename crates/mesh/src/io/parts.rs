@@ -45,7 +45,7 @@ pub struct Part {
 }
 
 /// Parts while a file is read.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     /// Names, each with the number of triangles before it.
     starts: Vec<(String, usize)>,
@@ -61,6 +61,22 @@ impl Parts {
         if self.starts.last().is_none_or(|(last, _)| *last != name) {
             self.starts.push((name, triangle_count));
         }
+    }
+
+    /// Adds those of a piece that comes after so many triangles.
+    pub(super) fn append(&mut self, piece: Self, triangle_count: usize) {
+        for (name, start) in piece.starts {
+            self.begin(name, triangle_count + start);
+        }
+    }
+
+    /// The same without some of the triangles, given by their numbers in order.
+    pub(super) fn without(self, removed: &[usize]) -> Self {
+        let mut parts = Self::default();
+        for (name, start) in self.starts {
+            parts.begin(name, start - removed.partition_point(|&triangle| triangle < start));
+        }
+        parts
     }
 
     /// The parts of so many triangles.

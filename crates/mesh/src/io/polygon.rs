@@ -9,14 +9,20 @@
 
 use earcut::Earcut;
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use robust::{Coord, orient2d};
+
+use super::content::joined;
 
 /// Above so many corners a polygon is always a fan: ear cutting takes quadratic time on hostile
 /// ones, here up to a tenth of a second.
 const MAX_CUT_CORNERS: usize = 4096;
 
+/// Polygons that a thread takes at once: fewer are sooner cut than shared out.
+const MIN_SHARE: usize = 1024;
+
 /// Faces of any number of corners, kept until all vertices are known.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Faces {
     triangles: Vec<[u32; 3]>,
     /// Faces of four corners and more; their fans hold their places among `triangles`.
@@ -25,16 +31,43 @@ pub(super) struct Faces {
 }
 
 /// A run of `Faces::corners`, which ends where the next begins.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Polygon {
     first_triangle: usize,
     first_corner: usize,
 }
 
 impl Faces {
-    /// With room for so many triangles.
-    pub(super) fn with_capacity(triangles: usize) -> Self {
-        Self { triangles: Vec::with_capacity(triangles), ..Self::default() }
+    /// These triangles, each a face.
+    pub(super) fn of_triangles(triangles: Vec<[u32; 3]>) -> Self {
+        Self { triangles, ..Self::default() }
+    }
+
+    /// Makes room for so many triangles more.
+    pub(super) fn reserve(&mut self, triangles: usize) {
+        self.triangles.reserve(triangles);
+    }
+
+    /// All faces of pieces in a row.
+    pub(super) fn joined(pieces: Vec<Self>) -> Self {
+        let (mut polygons, mut corners, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut triangle_count, mut corner_count) = (0, 0);
+        for piece in pieces {
+            polygons.extend(piece.polygons.iter().map(|polygon| Polygon {
+                first_triangle: triangle_count + polygon.first_triangle,
+                first_corner: corner_count + polygon.first_corner,
+            }));
+            triangle_count += piece.triangles.len();
+            corner_count += piece.corners.len();
+            triangles.push(piece.triangles);
+            corners.push(piece.corners);
+        }
+        Self { triangles: joined(triangles), polygons, corners: joined(corners) }
+    }
+
+    /// Adds a triangle.
+    pub(super) fn push_triangle(&mut self, corners: [u32; 3]) {
+        self.triangles.push(corners);
     }
 
     /// Adds a face of three corners or more.
@@ -53,23 +86,67 @@ impl Faces {
         self.triangles.len()
     }
 
+    /// The corners of a polygon.
+    fn corners_of(&self, index: usize) -> &[u32] {
+        let end = self.polygons.get(index + 1).map_or(self.corners.len(), |p| p.first_corner);
+        &self.corners[self.polygons[index].first_corner..end]
+    }
+
+    /// Removes every face with a corner of which `is_bad` holds.
+    pub(super) fn remove_those_of(&mut self, is_bad: impl Fn(u32) -> bool) -> Removed {
+        let (mut kept, mut removed) = (Self::default(), Removed::default());
+        let (mut polygon, mut triangle) = (0, 0);
+        while triangle < self.triangles.len() {
+            let starts = |p: &Polygon| p.first_triangle == triangle;
+            let is_polygon = self.polygons.get(polygon).is_some_and(starts);
+            let corners =
+                if is_polygon { self.corners_of(polygon) } else { &self.triangles[triangle] };
+            let end = triangle + corners.len() - 2;
+            if corners.iter().any(|&vertex| is_bad(vertex)) {
+                removed.faces += 1;
+                removed.triangles.extend(triangle..end);
+            } else {
+                kept.push(corners);
+            }
+            polygon += usize::from(is_polygon);
+            triangle = end;
+        }
+        *self = kept;
+        removed
+    }
+
     /// All triangles, in the order of the faces. Every corner must be a vertex by now.
     pub(super) fn into_triangles(mut self, positions: &[Vec3]) -> Vec<[u32; 3]> {
-        let mut cutter = Cutter::default();
-        for (index, polygon) in self.polygons.iter().enumerate() {
-            let end = self.polygons.get(index + 1).map_or(self.corners.len(), |p| p.first_corner);
-            let corners = &self.corners[polygon.first_corner..end];
+        let cut = |cutter: &mut Cutter, index: usize| {
+            let corners = self.corners_of(index);
             cutter.points.clear();
             cutter.points.extend(corners.iter().map(|&v| positions[v as usize].as_dvec3()));
-            if let Some(cut) = cutter.cut() {
-                let fan = &mut self.triangles[polygon.first_triangle..];
-                for (triangle, cut) in fan.iter_mut().zip(cut) {
-                    *triangle = cut.map(|corner| corners[corner]);
-                }
-            }
+            Some((index, cutter.cut()?))
+        };
+        // Most are fans, and stay as they are.
+        let cuts: Vec<(usize, Vec<[usize; 3]>)> = (0..self.polygons.len())
+            .into_par_iter()
+            .with_min_len(MIN_SHARE)
+            .map_init(Cutter::default, cut)
+            .flatten_iter()
+            .collect();
+        for (index, cut) in cuts {
+            let corners = self.corners_of(index);
+            let cut: Vec<[u32; 3]> = cut.iter().map(|cut| cut.map(|c| corners[c])).collect();
+            let first = self.polygons[index].first_triangle;
+            self.triangles[first..first + cut.len()].copy_from_slice(&cut);
         }
         self.triangles
     }
+}
+
+/// What was taken out of [`Faces`].
+#[derive(Debug, Default)]
+pub(super) struct Removed {
+    /// How many faces.
+    pub(super) faces: usize,
+    /// The numbers of their triangles, in order.
+    pub(super) triangles: Vec<usize>,
 }
 
 /// Cuts polygons, one after the other, in the same memory.

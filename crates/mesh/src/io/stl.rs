@@ -6,13 +6,19 @@
 //! A test compares both where they should agree.
 //!
 //! Normals and attributes are ignored. Vertices stay as they are stored, three to a facet.
+//!
+//! Both kinds are read in pieces, by all threads; a text that is wrong once more from its beginning.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
+use super::content::Content;
 use super::error::{Fault, Place, ReadError, lossy};
 use super::format::is_ascii_stl;
-use super::parts::{self, Model, Parts};
-use super::text::{self, Lines, Words};
+use super::parts::{Model, Parts};
+use super::polygon::Faces;
+use super::text::{self, Lines, Plain, Words};
+use super::{PIECE, ReadOptions};
 
 /// Bytes before the facets of a binary file: 80 that mean nothing and the count.
 const HEADER: usize = 84;
@@ -20,99 +26,246 @@ const HEADER: usize = 84;
 const FACET: usize = 50;
 
 /// Reads an STL file, text or binary.
-pub(super) fn parse(bytes: &[u8]) -> Result<Model, ReadError> {
-    let mut solids = Solids::default();
-    if is_ascii_stl(bytes) {
-        let mut lines = Lines::new(bytes);
-        solids.read_text(&mut lines).map_err(|fault| fault.on_line(lines.number()))?;
+pub(super) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Model, ReadError> {
+    let content = if is_ascii_stl(bytes) {
+        match in_pieces(bytes, PIECE, options) {
+            Some(content) => content,
+            None => in_one(bytes, options)?,
+        }
     } else {
-        solids.read_binary(bytes)?;
-    }
-    let vertex_count = u32::try_from(solids.positions.len()).unwrap_or(u32::MAX);
-    let corners: Vec<u32> = (0..vertex_count).collect();
-    let triangles = corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
-    parts::model(solids.positions, triangles, solids.parts, Parts::default())
+        from_binary(bytes, options)?
+    };
+    content.into_model()
 }
 
-#[derive(Default)]
-struct Solids {
+/// The content of a text that is good; of others `None`.
+fn in_pieces(bytes: &[u8], size: usize, options: &ReadOptions) -> Option<Content> {
+    // Wherever a facet begins the state is the same: in a solid, and in no facet.
+    let begins_facet = |_: &[u8], after: &[u8]| {
+        let start = after.trim_ascii_start();
+        start.get(..6).is_some_and(|word| word.eq_ignore_ascii_case(b"facet "))
+    };
+    let pieces = text::pieces(bytes, size, begins_facet);
+    let last = pieces.len() - 1;
+    let read = |(index, text): (usize, &&[u8])| {
+        let between = State { in_solid: true, facet: None };
+        let state = if index == 0 { State::default() } else { between };
+        let mut solids = Solids { state, ..Solids::new(options) };
+        solids.read(&mut Lines::new(text)).ok()?;
+        let end = if index == last { State::default() } else { between };
+        (solids.state == end).then(|| solids.into_content())
+    };
+    let pieces: Option<Vec<Content>> = pieces.par_iter().enumerate().map(read).collect();
+    pieces.map(with_all_triangles)
+}
+
+/// The same, or the first thing that is wrong.
+fn in_one(bytes: &[u8], options: &ReadOptions) -> Result<Content, ReadError> {
+    let mut solids = Solids::new(options);
+    let mut lines = Lines::new(bytes);
+    let read = solids.read(&mut lines);
+    read.and(solids.state.finished()).map_err(|fault| fault.on_line(lines.number()))?;
+    Ok(with_all_triangles(vec![solids.into_content()]))
+}
+
+/// The pieces as one, with triangles of three vertices each in a row.
+fn with_all_triangles(pieces: Vec<Content>) -> Content {
+    let content = Content::joined(pieces);
+    Content { faces: triangles(content.positions.len()), ..content }
+}
+
+/// Three of so many vertices each in a row.
+fn triangles(vertex_count: usize) -> Faces {
+    let count = u32::try_from(vertex_count).unwrap_or(u32::MAX) / 3;
+    let corners = |facet: u32| [3 * facet, 3 * facet + 1, 3 * facet + 2];
+    Faces::of_triangles((0..count).into_par_iter().map(corners).collect())
+}
+
+fn from_binary(bytes: &[u8], options: &ReadOptions) -> Result<Content, ReadError> {
+    let available = bytes.len() as u64;
+    let not_stl = |needed| Fault::NotStl { needed, available }.at(Place::Byte(0));
+    let Some((header, facets)) = bytes.split_first_chunk::<HEADER>() else {
+        return Err(not_stl(HEADER as u64));
+    };
+    let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
+    let needed = HEADER as u64 + FACET as u64 * u64::from(count);
+    if available < needed {
+        return Err(not_stl(needed));
+    }
+    let (facets, _) = facets.as_chunks::<FACET>();
+    let facets = &facets[..count as usize];
+    let vertex = |facet: &[u8; FACET], corner: usize| {
+        let (coordinates, _) = facet[12 + 12 * corner..].as_chunks::<4>();
+        Vec3::from_array([0, 1, 2].map(|i| f32::from_le_bytes(coordinates[i])))
+    };
+    let mut positions: Vec<Vec3> = bytemuck::zeroed_vec(3 * facets.len());
+    positions.par_chunks_exact_mut(3).with_min_len(PIECE / FACET).zip(facets).for_each(
+        |(corners, facet)| {
+            for (corner, position) in corners.iter_mut().enumerate() {
+                *position = vertex(facet, corner);
+            }
+        },
+    );
+    if options.strict
+        && let Some(vertex) = positions.iter().position(|position| !position.is_finite())
+    {
+        let (row, position) = (vertex / 3, positions[vertex].to_array());
+        let byte = (HEADER + FACET * row) as u64;
+        let place = Place::Row { element: "facet".to_owned(), row: row as u64, byte };
+        return Err(Fault::NotFinite { vertex: vertex as u64, position }.at(place));
+    }
+    let faces = triangles(positions.len());
+    Ok(Content { positions, faces, ..Content::default() })
+}
+
+/// Where in a text we are.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct State {
+    in_solid: bool,
+    /// Vertices so far, inside a facet.
+    facet: Option<usize>,
+}
+
+impl State {
+    /// Whether the text may end here.
+    fn finished(self) -> Result<(), Fault> {
+        match self {
+            Self { facet: Some(_), .. } => Err(Fault::Unfinished { missing: "endfacet" }),
+            Self { in_solid: true, .. } => Err(Fault::Unfinished { missing: "endsolid" }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Reads a text.
+struct Solids<'a> {
+    options: &'a ReadOptions,
     positions: Vec<Vec3>,
     parts: Parts,
+    state: State,
 }
 
-impl Solids {
-    fn vertex(&mut self, position: [f32; 3]) -> Result<(), Fault> {
-        let vertex = self.positions.len() as u64;
-        self.positions.push(position.into());
-        if position.iter().all(|x| x.is_finite()) {
-            Ok(())
-        } else {
-            Err(Fault::NotFinite { vertex, position })
-        }
+impl<'a> Solids<'a> {
+    fn new(options: &'a ReadOptions) -> Self {
+        let (positions, parts) = (Vec::new(), Parts::default());
+        Self { options, positions, parts, state: State::default() }
     }
 
-    fn read_binary(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
-        let available = bytes.len() as u64;
-        let not_stl = |needed| Fault::NotStl { needed, available }.at(Place::Byte(0));
-        let Some((header, facets)) = bytes.split_first_chunk::<HEADER>() else {
-            return Err(not_stl(HEADER as u64));
-        };
-        let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
-        let needed = HEADER as u64 + FACET as u64 * u64::from(count);
-        if available < needed {
-            return Err(not_stl(needed));
+    /// What was read; triangles are made when all are.
+    fn into_content(self) -> Content {
+        let faces = triangles(self.positions.len());
+        Content { positions: self.positions, faces, parts: self.parts, ..Content::default() }
+    }
+
+    fn vertex(&mut self, position: [f32; 3]) -> Result<(), Fault> {
+        if self.options.strict && position.iter().any(|x| !x.is_finite()) {
+            let vertex = self.positions.len() as u64;
+            return Err(Fault::NotFinite { vertex, position });
         }
-        self.positions.reserve(3 * count as usize);
-        for (row, facet) in facets.chunks_exact(FACET).take(count as usize).enumerate() {
-            for corner in facet[12..48].chunks_exact(12) {
-                let real = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| corner[at + i]));
-                self.vertex([real(0), real(4), real(8)]).map_err(|fault| {
-                    let byte = (HEADER + FACET * row) as u64;
-                    fault.at(Place::Row { element: "facet".to_owned(), row: row as u64, byte })
-                })?;
-            }
-        }
+        self.positions.push(position.into());
         Ok(())
     }
 
-    fn read_text(&mut self, lines: &mut Lines<'_>) -> Result<(), Fault> {
-        let mut in_solid = false;
-        // Vertices so far, inside a facet.
-        let mut facet = None;
-        while let Some(line) = lines.next_line() {
-            let mut words = Words(line);
-            let Some(word) = words.next() else { continue };
-            let unexpected = |expected| Err(Fault::Unexpected { expected, found: shown(line) });
-            match (word.to_ascii_lowercase().as_slice(), facet) {
-                (b"solid", _) if !in_solid => {
-                    in_solid = true;
-                    self.parts.begin(shown(words.0), self.positions.len() / 3);
-                }
-                _ if !in_solid => return unexpected("solid"),
-                (b"endsolid", None) => in_solid = false,
-                (b"facet", None) => facet = Some(0),
-                (_, None) => return unexpected("facet or endsolid"),
-                (b"vertex", Some(corners)) => {
-                    self.vertex(text::position(&mut words)?)?;
-                    if let Some(word) = words.next() {
-                        return Err(Fault::LeftOver { text: lossy(word) });
-                    }
-                    facet = Some(corners + 1);
-                }
-                (b"endfacet", Some(3)) => facet = None,
-                (b"endfacet", Some(corners)) => return Err(Fault::NotATriangle { corners }),
-                (b"outer" | b"endloop", Some(_)) => {}
-                (_, Some(_)) => return unexpected("vertex or endfacet"),
+    fn read(&mut self, lines: &mut Lines<'_>) -> Result<(), Fault> {
+        loop {
+            if lines.take_plain(|line| self.plain(line)) {
+                continue;
             }
+            let Some(line) = lines.next_line() else { return Ok(()) };
+            self.line(line)?;
         }
-        match (in_solid, facet) {
-            (_, Some(_)) => Err(Fault::Unfinished { missing: "endfacet" }),
-            (true, None) => Err(Fault::Unfinished { missing: "endsolid" }),
-            (false, None) => Ok(()),
+    }
+
+    /// Reads vertices as they are nearly always written.
+    fn plain(&mut self, line: &mut Plain<'_>) -> Option<()> {
+        let corners = self.state.facet?;
+        line.spaces();
+        line.keyword(b"vertex")?;
+        let position = line.position()?;
+        line.end_line()?;
+        self.vertex(position).ok()?;
+        self.state.facet = Some(corners + 1);
+        Some(())
+    }
+
+    fn line(&mut self, line: &[u8]) -> Result<(), Fault> {
+        let mut words = Words(line);
+        let Some(word) = words.next() else { return Ok(()) };
+        let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
+        let unexpected = |expected| Err(Fault::Unexpected { expected, found: shown(line) });
+        let State { in_solid, facet } = &mut self.state;
+        match *facet {
+            _ if !*in_solid => {
+                if !is(b"solid") {
+                    return unexpected("solid");
+                }
+                *in_solid = true;
+                self.parts.begin(shown(words.0), self.positions.len() / 3);
+            }
+            None if is(b"endsolid") => *in_solid = false,
+            None if is(b"facet") => *facet = Some(0),
+            None => return unexpected("facet or endsolid"),
+            Some(corners) if is(b"vertex") => {
+                *facet = Some(corners + 1);
+                self.vertex(text::position(&mut words)?)?;
+                if let Some(word) = words.next() {
+                    return Err(Fault::LeftOver { text: lossy(word) });
+                }
+            }
+            Some(3) if is(b"endfacet") => *facet = None,
+            Some(corners) if is(b"endfacet") => return Err(Fault::NotATriangle { corners }),
+            Some(_) if is(b"outer") || is(b"endloop") => {}
+            Some(_) => return unexpected("vertex or endfacet"),
         }
+        Ok(())
     }
 }
 
 fn shown(text: &[u8]) -> String {
     lossy(text.trim_ascii())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use proptest::sample::select;
+
+    use super::*;
+
+    /// Lines of files, good and bad.
+    const LINES: [&str; 10] = [
+        "facet normal 0 0 1\n outer loop\nvertex 0 0 0\n  vertex 1 0 0\nVertex 0 1e0 0\nendloop\nendfacet",
+        "facet normal 0 0 1\nvertex nan 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet",
+        " FACET x\nvertex 0 0 0\nvertex 5 0 0\nvertex 0 6 0\nendfacet",
+        "endsolid a\nsolid b",
+        "facet normal",
+        "vertex 1 2 3",
+        "endfacet",
+        "endsolid",
+        "solid c",
+        "",
+    ];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn pieces_of_any_size_are_the_whole(
+            lines in vec(select(&LINES[..]), 0..20), most in 4usize..=10, size in 1usize..200,
+            strict in any::<bool>(),
+        ) {
+            let lines = lines.iter().filter(|line| LINES[..most].contains(line));
+            let text = lines.fold("solid a\n".to_owned(), |text, line| text + line + "\n");
+            let text = text + "endsolid";
+            let options = ReadOptions { strict };
+            let whole = in_one(text.as_bytes(), &options);
+            let pieces = in_pieces(text.as_bytes(), size, &options);
+            prop_assert_eq!(pieces.is_some(), whole.is_ok(), "{:?}", text);
+            let model = |content: Content| content.into_model().map_err(|error| error.to_string());
+            if let (Some(pieces), Ok(whole)) = (pieces, whole) {
+                prop_assert_eq!(model(pieces), model(whole));
+            }
+        }
+    }
 }

@@ -2,13 +2,14 @@
 
 use std::fs;
 
-use drypoint_mesh::io::{Format, parse, read};
+use drypoint_mesh::io::{Format, ReadOptions, parse_with, read};
 
 use crate::files::{CORNERS, Gltf, binary_stl, glb, one_triangle, ply};
 
 #[track_caller]
 fn check(format: Format, bytes: impl AsRef<[u8]>, message: &str) {
-    let error = parse(format, bytes.as_ref()).unwrap_err().to_string();
+    let strict = ReadOptions { strict: true };
+    let error = parse_with(format, bytes.as_ref(), None, &strict).unwrap_err().to_string();
     assert_eq!(error, message);
     assert!(!error.contains('\n'));
 }

@@ -5,5 +5,6 @@ mod errors;
 mod files;
 mod gltf;
 mod hostile;
+mod islands;
 mod models;
 mod text;

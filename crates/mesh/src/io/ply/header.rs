@@ -28,6 +28,23 @@ pub(super) struct Element {
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
     pub(super) kind: Kind,
+    /// Bytes of a row in a binary file, if there are no lists.
+    pub(super) row_size: Option<usize>,
+}
+
+impl Element {
+    /// Bytes that a row takes at least in a binary file.
+    pub(super) fn least_row_size(&self) -> usize {
+        self.properties.iter().map(|p| p.length.unwrap_or(p.value).size()).sum::<usize>().max(1)
+    }
+}
+
+impl Header {
+    /// The elements that have rows in the file: a row of no values takes no room, and there is nothing
+    /// to read.
+    pub(super) fn tables(&self) -> impl Iterator<Item = &Element> {
+        self.elements.iter().filter(|element| !element.properties.is_empty())
+    }
 }
 
 /// What of an element is read, by indices of its properties.
@@ -130,6 +147,9 @@ fn read(lines: &mut Lines<'_>) -> Result<Header, Fault> {
     let mut vertex_count = None;
     for element in &mut elements {
         element.kind = kind(element)?;
+        let is_fixed = element.properties.iter().all(|property| property.length.is_none());
+        let size = || element.properties.iter().map(|property| property.value.size()).sum();
+        element.row_size = is_fixed.then(size);
         if let Kind::Vertex { .. } = element.kind {
             vertex_count = Some(element.count);
         }
@@ -158,7 +178,8 @@ fn element(mut words: Words<'_>, line: &[u8]) -> Result<Element, Fault> {
     let (Some(name), Some(count)) = (name, count) else {
         return Err(unexpected("element NAME COUNT", line));
     };
-    Ok(Element { name: lossy(name), count, properties: Vec::new(), kind: Kind::Other })
+    let (properties, kind) = (Vec::new(), Kind::Other);
+    Ok(Element { name: lossy(name), count, properties, kind, row_size: None })
 }
 
 fn property(mut words: Words<'_>, line: &[u8]) -> Result<Property, Fault> {

@@ -6,184 +6,120 @@
 //! Read are `x`, `y` and `z` of the element `vertex`; lists `vertex_indices` or `vertex_index` of
 //! `face`; and of `tristrips`, where −1 ends a strip and every second triangle is turned, as in the
 //! files of the Stanford 3D Scanning Repository. Everything else is skipped.
+//!
+//! A file is read in pieces, by all threads: first one looks where rows begin, then all read them.
+//! The first thing that is wrong in the first piece that has any is the first of the file.
 
 mod ascii;
 mod binary;
 mod header;
+mod row;
 
-use glam::Vec3;
+use rayon::prelude::*;
 
-use super::error::{Fault, Place, ReadError};
-use super::parts::{self, Model, Parts};
-use super::polygon::Faces;
-use ascii::Ascii;
-use binary::Binary;
-use header::{Element, Encoding, Header, Kind, Scalar};
+use super::error::ReadError;
+use super::parts::Model;
+use super::{PIECE, ReadOptions};
+use crate::io::content::Content;
+use header::Encoding;
+use row::Rows;
 
 /// Reads a PLY file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Model, ReadError> {
+pub(super) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Model, ReadError> {
+    in_pieces(bytes, PIECE, options)?.into_model()
+}
+
+/// What a file holds, read in pieces of some `size` bytes.
+fn in_pieces(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<Content, ReadError> {
     let (header, lines) = header::parse(bytes)?;
-    match header.encoding {
-        Encoding::Ascii => read(&header, Ascii::new(lines)),
-        Encoding::LittleEndian => read(&header, Binary::new(bytes, lines.rest(), true)),
-        Encoding::BigEndian => read(&header, Binary::new(bytes, lines.rest(), false)),
-    }
+    let rows = || Rows::new(&header, options);
+    let found: Vec<Result<Content, ReadError>> = match header.encoding {
+        Encoding::Ascii => ascii::pieces(&header, lines, size)
+            .into_par_iter()
+            .map(|piece| rows().read_text(piece))
+            .collect(),
+        Encoding::LittleEndian | Encoding::BigEndian => binary::pieces(&header, lines.rest(), size)
+            .into_par_iter()
+            .map(|piece| rows().read_bytes(bytes, &piece))
+            .collect(),
+    };
+    let pieces: Vec<Content> = found.into_iter().collect::<Result<_, _>>()?;
+    Ok(Content::joined(pieces))
 }
 
-/// The values of a file, in order.
-trait Values {
-    /// Goes to the next row of an element, if there is one.
-    fn begin_row(&mut self) -> bool;
-    /// The next value as f32.
-    fn real(&mut self, scalar: Scalar) -> Result<f32, Fault>;
-    /// The next value as an integer.
-    fn integer(&mut self, scalar: Scalar) -> Result<i64, Fault>;
-    /// Passes over values.
-    fn skip(&mut self, scalar: Scalar, count: u64) -> Result<(), Fault>;
-    /// Checks that the row is complete.
-    fn end_row(&mut self) -> Result<(), Fault>;
-    /// Where we are, in a row of an element.
-    fn place(&self, element: &str, row: u64) -> Place;
-    /// At most so many rows of an element can follow.
-    fn rows_left(&self, element: &Element) -> u64;
-}
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use proptest::sample::select;
 
-fn read<V: Values>(header: &Header, mut values: V) -> Result<Model, ReadError> {
-    let mut mesh = Builder { vertex_count: header.vertex_count, ..Builder::default() };
-    for element in &header.elements {
-        // Rows of no values take no room in a binary file, and there is nothing to read.
-        if element.properties.is_empty() {
-            continue;
-        }
-        mesh.reserve(element, values.rows_left(element).min(element.count));
-        for row in 0..element.count {
-            let done = if values.begin_row() {
-                mesh.row(element, row, &mut values)
-            } else {
-                Err(Fault::TooShort { needed: 1, available: 0 })
-            };
-            done.map_err(|fault| {
-                let (name, expected) = (element.name.clone(), element.count);
-                let place = values.place(&name, row);
-                match fault {
-                    Fault::TooShort { .. } => {
-                        Fault::EndsEarly { element: name, rows: row, expected }.at(place)
-                    }
-                    fault => fault.at(place),
-                }
-            })?;
-        }
-    }
-    let triangles = mesh.faces.into_triangles(&mesh.positions);
-    parts::model(mesh.positions, triangles, Parts::default(), Parts::default())
-}
+    use super::*;
 
-#[derive(Default)]
-struct Builder {
-    /// As the header says.
-    vertex_count: u64,
-    positions: Vec<Vec3>,
-    faces: Faces,
-    /// The list last read.
-    list: Vec<i64>,
-    corners: Vec<u32>,
-}
+    const VERTEX: &str = "property float x\nproperty float y\nproperty float z\n";
+    const FACE: &str = "property list uchar int vertex_index\n";
 
-impl Builder {
-    /// Makes room for rows that the file is long enough to hold.
-    fn reserve(&mut self, element: &Element, rows: u64) {
-        let rows = usize::try_from(rows).unwrap_or(0);
-        match element.kind {
-            Kind::Vertex { .. } => self.positions.reserve(rows),
-            Kind::Face { .. } => self.faces = Faces::with_capacity(rows),
-            Kind::Strips { .. } | Kind::Other => {}
-        }
+    /// Reads `bytes` in pieces of `size`, and as one.
+    #[track_caller]
+    fn check(bytes: &[u8], size: usize, options: &ReadOptions) {
+        let read = |size| {
+            let read = in_pieces(bytes, size, options).and_then(Content::into_model);
+            read.map_err(|error| error.to_string())
+        };
+        assert_eq!(read(size), read(usize::MAX / 2));
     }
 
-    fn row<V: Values>(&mut self, element: &Element, row: u64, values: &mut V) -> Result<(), Fault> {
-        let mut position = [0.0; 3];
-        for (index, property) in element.properties.iter().enumerate() {
-            let value = property.value;
-            match (element.kind, property.length) {
-                (Kind::Vertex { xyz }, None) if xyz.contains(&index) => {
-                    let coordinate = values.real(value)?;
-                    (0..3).filter(|&i| xyz[i] == index).for_each(|i| position[i] = coordinate);
-                }
-                (Kind::Face { list } | Kind::Strips { list }, Some(length)) if list == index => {
-                    let length = count(values.integer(length)?)?;
-                    self.list.clear();
-                    for _ in 0..length {
-                        self.list.push(values.integer(value)?);
-                    }
-                }
-                (_, None) => values.skip(value, 1)?,
-                (_, Some(length)) => {
-                    let length = count(values.integer(length)?)?;
-                    values.skip(value, length)?;
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn lines_in_pieces_are_the_whole(
+            lines in vec(select(&["0 0 1", " 1 2 3", "nan 1 2", "1 2", "1e99 0 0 ", "", "\r"][..]), 0..9),
+            faces in vec(select(&["3 0 1 2", "4 2 1 0 1", "3 0 1 9", "3 1 0 2 7", " ", "3 0 1 -1"][..]), 0..9),
+            missing in 0usize..2, wide in any::<bool>(), last in select(&["", "\n"][..]),
+            size in 1usize..60, strict in any::<bool>(),
+        ) {
+            let rows = |lines: &[&str]| lines.iter().filter(|line| !line.trim().is_empty()).count();
+            let [vertices, triangles] = [rows(&lines), rows(&faces) + missing];
+            let face = if wide { "property uchar r\n" } else { "" };
+            let lines: String = lines.iter().chain(&faces).map(|line| format!("{line}\n")).collect();
+            let text = format!(
+                "ply\nformat ascii 1.0\nelement vertex {vertices}\n{VERTEX}element none 3\n\
+                 element face {triangles}\n{FACE}{face}end_header\n{}{last}",
+                lines.trim_end_matches('\n'),
+            );
+            check(text.as_bytes(), size, &ReadOptions { strict });
+        }
+
+        #[test]
+        fn bytes_in_pieces_are_the_whole(
+            vertices in vec([any::<u8>(), any::<u8>(), any::<u8>()], 0..9),
+            faces in vec(vec(0u8..9, 3..5), 0..9), big in any::<bool>(), wide in any::<bool>(),
+            cut in 0usize..40, extra in 0usize..2, size in 1usize..60, strict in any::<bool>(),
+        ) {
+            let encoding = if big { "binary_big_endian" } else { "binary_little_endian" };
+            let (count, face_count) = (vertices.len(), faces.len() + extra);
+            let more = if wide { "property short s\nproperty list ushort uchar l\n" } else { "" };
+            let mut bytes = format!(
+                "ply\nformat {encoding} 1.0\nelement vertex {count}\n{VERTEX}\
+                 element face {face_count}\n{FACE}{more}end_header\n"
+            )
+            .into_bytes();
+            let value = |bits: u32| if big { bits.to_be_bytes() } else { bits.to_le_bytes() };
+            for x in vertices.into_iter().flatten() {
+                // One in some is not finite.
+                bytes.extend(value(if x == 7 { f32::NAN.to_bits() } else { f32::from(x).to_bits() }));
+            }
+            for face in faces {
+                bytes.push(u8::try_from(face.len()).unwrap());
+                face.iter().for_each(|&vertex| bytes.extend(value(u32::from(vertex))));
+                if wide {
+                    bytes.extend([0; 4]);
                 }
             }
-        }
-        values.end_row()?;
-        match element.kind {
-            Kind::Vertex { .. } => self.vertex(row, position),
-            Kind::Face { .. } => self.face(),
-            Kind::Strips { .. } => self.strips(),
-            Kind::Other => Ok(()),
-        }
-    }
-
-    fn vertex(&mut self, vertex: u64, position: [f32; 3]) -> Result<(), Fault> {
-        self.positions.push(position.into());
-        if position.iter().all(|x| x.is_finite()) {
-            Ok(())
-        } else {
-            Err(Fault::NotFinite { vertex, position })
-        }
-    }
-
-    fn face(&mut self) -> Result<(), Fault> {
-        if self.list.len() < 3 {
-            return Err(Fault::TooFewCorners { corners: self.list.len() });
-        }
-        self.corners.clear();
-        for &index in &self.list {
-            self.corners.push(vertex_index(index, self.vertex_count)?);
-        }
-        self.faces.push(&self.corners);
-        Ok(())
-    }
-
-    /// Triangles that only stitch strips together, with a corner twice, are left out.
-    fn strips(&mut self) -> Result<(), Fault> {
-        for strip in self.list.split(|&index| index == -1) {
-            self.corners.clear();
-            for &index in strip {
-                self.corners.push(vertex_index(index, self.vertex_count)?);
+            if cut < 20 {
+                bytes.truncate(bytes.len().saturating_sub(cut));
             }
-            for (i, triangle) in self.corners.windows(3).enumerate() {
-                let &[a, b, c] = triangle else { continue };
-                if a != b && b != c && c != a {
-                    self.faces.push(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
-                }
-            }
+            check(&bytes, size, &ReadOptions { strict });
         }
-        Ok(())
     }
-}
-
-/// The length of a list.
-fn count(length: i64) -> Result<u64, Fault> {
-    u64::try_from(length).map_err(|_| Fault::Unexpected {
-        expected: "the length of a list",
-        found: length.to_string(),
-    })
-}
-
-fn vertex_index(index: i64, vertex_count: u64) -> Result<u32, Fault> {
-    let known = u32::try_from(index).ok().filter(|&vertex| u64::from(vertex) < vertex_count);
-    known.ok_or(if index < 0 {
-        Fault::NotAnIndex { text: index.to_string() }
-    } else {
-        Fault::VertexOutOfRange { vertex: index, vertex_count }
-    })
 }
