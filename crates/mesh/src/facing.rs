@@ -53,7 +53,7 @@ fn exact_side([a, b, c]: [DVec3; 3], viewpoint: Viewpoint) -> Ordering {
     // Differences of f32 are nearly always exact in f64.
     match (exact_difference(b, a), exact_difference(c, a)) {
         (Some(u), Some(v)) => orientation(u, v, direction, DVec3::ZERO).reverse(),
-        _ => rational_determinant(a, b, c, direction),
+        _ => whole_determinant(a, b, c, direction),
     }
 }
 
@@ -151,15 +151,24 @@ fn exact_difference(p: DVec3, q: DVec3) -> Option<DVec3> {
     (error == DVec3::ZERO).then_some(difference)
 }
 
-/// The sign of det(b − a, c − a, d) in rational arithmetic.
-fn rational_determinant(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
-    let exact = |p: DVec3| p.to_array().map(|x| BigRational::from_float(x).unwrap_or_default());
-    let [a, b, c, d] = [a, b, c, d].map(exact);
+/// 2¹⁴⁹: f32 are multiples of its inverse, so that times this they are whole.
+const WHOLE_POSITION: f64 = f64::from_bits((1023 + 149) << 52);
+/// 2²⁵²: the same of f64 that are 0 or at least 1e-60 in size.
+const WHOLE_DIRECTION: f64 = f64::from_bits((1023 + 252) << 52);
+
+/// The sign of det(b − a, c − a, d) in whole numbers: fractions are reduced at every step, which takes
+/// most of their time.
+fn whole_determinant(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
+    let whole = |p: DVec3, scale: f64| {
+        p.to_array().map(|x| BigRational::from_float(x * scale).unwrap_or_default().to_integer())
+    };
+    let [a, b, c] = [a, b, c].map(|p| whole(p, WHOLE_POSITION));
+    let d = whole(d, WHOLE_DIRECTION);
     let u: [_; 3] = std::array::from_fn(|i| &b[i] - &a[i]);
     let v: [_; 3] = std::array::from_fn(|i| &c[i] - &a[i]);
     let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
     let determinant = minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2];
-    determinant.cmp(&BigRational::default())
+    determinant.cmp(&Default::default())
 }
 
 #[cfg(test)]
@@ -203,6 +212,17 @@ mod tests {
         assert!(!has_area([Vec3::ONE, Vec3::ONE, Vec3::X]));
     }
 
+    /// The sign of det(b − a, c − a, d) in rational arithmetic.
+    fn rational_determinant(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
+        let exact = |p: DVec3| p.to_array().map(|x| BigRational::from_float(x).unwrap_or_default());
+        let [a, b, c, d] = [a, b, c, d].map(exact);
+        let u: [_; 3] = std::array::from_fn(|i| &b[i] - &a[i]);
+        let v: [_; 3] = std::array::from_fn(|i| &c[i] - &a[i]);
+        let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
+        let determinant = minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2];
+        determinant.cmp(&BigRational::default())
+    }
+
     /// f32 of very different sizes, so that differences do not fit an f64.
     fn wild() -> impl Strategy<Value = f32> {
         (-1.0f32..1.0, -40i32..40).prop_map(|(m, e)| m * 2f32.powi(e))
@@ -210,6 +230,11 @@ mod tests {
 
     fn wild_point() -> impl Strategy<Value = Vec3> {
         [wild(), wild(), wild()].prop_map(Vec3::from_array)
+    }
+
+    fn extreme_point() -> impl Strategy<Value = Vec3> {
+        let extreme = || (-1.0f32..1.0, -149i32..128).prop_map(|(m, e)| m * (e as f32).exp2());
+        [extreme(), extreme(), extreme()].prop_map(Vec3::from_array)
     }
 
     proptest! {
@@ -251,6 +276,21 @@ mod tests {
             let expected = rational_determinant(p, q, r, direction);
             prop_assert_eq!(face_side([a, b, c], Viewpoint::from_direction(direction)), expected);
             prop_assert_eq!(face_side([b, a, c], Viewpoint::from_direction(direction)), expected.reverse());
+        }
+
+        /// From the least f32 to the largest, and as far as a viewpoint may be.
+        #[test]
+        fn whole_numbers_are_large_enough(
+            corners in [extreme_point(), extreme_point(), extreme_point()],
+            direction in [-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0], sizes in [-199i32..199, -199i32..199, -199i32..199],
+        ) {
+            let [a, b, c] = corners.map(|p| p.as_dvec3());
+            let whole = |i: usize| (2f64.powi(52) * direction[i]).round() * 2f64.powi(sizes[i] - 52);
+            let direction = DVec3::new(whole(0), whole(1), whole(2));
+            prop_assert_eq!(whole_determinant(a, b, c, direction), rational_determinant(a, b, c, direction));
+            // In the plane, and so near it that only the last digits tell.
+            let along = f64::from(sizes[0]) * (b - a);
+            prop_assert_eq!(whole_determinant(a, b, c, along), rational_determinant(a, b, c, along));
         }
 
         #[test]
