@@ -4,6 +4,7 @@ use std::{fmt, io};
 
 use super::Format;
 use crate::MeshError;
+use crate::rig::CurveError;
 
 /// Why a file gives no mesh. Each displays as one line that reads on from the file's name:
 /// `bunny.obj: line 12: "1.2.3" is not a number`.
@@ -271,6 +272,12 @@ pub enum Fault {
         joint: u64,
         /// How many joints the skin has.
         joint_count: u64,
+    },
+    /// Keys of an animation that make no curve.
+    #[error("{error}")]
+    Curve {
+        /// What is wrong with them.
+        error: CurveError,
     },
     /// A file named by a glTF file cannot be read.
     #[error("the file {} cannot be read: {error}", quoted(uri))]

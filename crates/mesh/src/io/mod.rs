@@ -61,8 +61,7 @@ const PIECE: usize = 1 << 18;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     /// A vertex that is NaN, infinite or beyond the range of f32 is an error. Else it and the faces that
-    /// use it are left out and counted in [`Model::dropped`]; not so in glTF files, where it is always an
-    /// error.
+    /// use it are left out and counted in [`Model::dropped`].
     pub strict: bool,
 }
 
@@ -132,7 +131,7 @@ pub fn parse_with(
         #[cfg(feature = "stl")]
         Format::Stl => stl::parse(bytes, options),
         #[cfg(feature = "gltf")]
-        Format::Gltf => gltf::parse(bytes, folder),
+        Format::Gltf => gltf::parse(bytes, folder, options),
         #[cfg(not(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf")))]
         format => Err(ReadError::NotBuiltIn { format }),
     }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::ReadError;
+use crate::rig::Rig;
 use crate::{MAX_TRIANGLES, Mesh, MeshError};
 
 /// A mesh and the names that the file gives to runs of its triangles.
@@ -20,6 +21,11 @@ pub struct Model {
     pub materials: Vec<Part>,
     /// What of the file is not in the mesh.
     pub dropped: Dropped,
+    /// The same triangles on vertices that move: of a glTF file with skins, morph targets or animations, or
+    /// that places a mesh more than once. `mesh` is how it looks at rest.
+    pub rig: Option<Rig>,
+    /// For each vertex of the rig the one of `mesh` that it is at rest; empty without a rig.
+    pub rig_vertices: Vec<u32>,
 }
 
 /// What a reader left out, because no surface can be made of it.
@@ -37,8 +43,8 @@ pub struct Dropped {
 pub struct Part {
     /// In [`Model::parts`] the latest `o` or `g` name in OBJ, the name of a solid in ascii STL; in
     /// glTF the name of the node, else of its mesh, else "node 3", followed by "/2" for primitive 2
-    /// of a mesh of several. In [`Model::materials`] the latest `usemtl` name in OBJ. Empty where
-    /// the file gives none.
+    /// of a mesh of several. In [`Model::materials`] the latest `usemtl` name in OBJ, and in glTF
+    /// the name of the material, else "material 3". Empty where the file gives none.
     pub name: String,
     /// Indices of its triangles; never empty.
     pub triangles: Range<u32>,
@@ -118,5 +124,5 @@ pub(super) fn model(
     }
     let (parts, materials) = (parts.ending_at(count)?, materials.ending_at(count)?);
     let mesh = Mesh::new(positions, triangles)?;
-    Ok(Model { mesh, parts, materials, dropped: Dropped::default() })
+    Ok(Model { mesh, parts, materials, ..Model::default() })
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rustc_hash::FxHashMap;
 
 use super::nodes::parents_first;
-use super::{Animation, Carrier, Local, Morph, Node, Rig};
+use super::{Animation, Carrier, Local, Morph, Node, Pose, Rig};
 
 /// One carrier's part in a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +115,11 @@ impl RigBuilder {
         let vertex = index(rig.vertex_count() - 1);
         self.vertices.insert(self.key.as_slice().into(), vertex);
         vertex
+    }
+
+    /// Where carriers are at rest, those that there are by now.
+    pub fn rest(&self) -> Pose {
+        self.rig.rest()
     }
 
     /// Adds a triangle.

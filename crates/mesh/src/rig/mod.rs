@@ -51,6 +51,8 @@ pub use animation::{Animation, Channel, Property};
 pub use builder::{Influence, Offset, RigBuilder};
 pub use contours::FaceSides;
 pub use curve::{Curve, CurveError, Interpolation};
+#[cfg(feature = "gltf")]
+pub(crate) use model::posed_position;
 pub use model::{Carrier, Morph, Pose, Rig};
 pub use nodes::{Local, Node};
 pub use skin::{RigidPart, Shape, Skin};

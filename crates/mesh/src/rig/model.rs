@@ -136,16 +136,7 @@ impl Rig {
 
     /// Where a vertex is in a pose, in the scene: Σ weight · to_scene · (position + Σ morphs).
     pub fn position(&self, vertex: u32, pose: &Pose) -> DVec3 {
-        let offsets = self.offsets(vertex);
-        let carried = (0..).zip(self.influences(vertex)).map(|(number, influence)| {
-            let of_it = offsets.iter().filter(|offset| offset.influence == number);
-            let moved = of_it.fold(influence.position.as_dvec3(), |sum, offset| {
-                sum + pose.weights[offset.morph as usize] * offset.by.as_dvec3()
-            });
-            let at = pose.to_scene[influence.carrier as usize].transform_point3(moved);
-            influence.weight * at
-        });
-        carried.sum()
+        posed_position(self.influences(vertex), self.offsets(vertex), pose)
     }
 
     /// Where it is when nothing is animated.
@@ -223,6 +214,19 @@ impl Rig {
         let vertices = 0..u32::try_from(self.vertex_count()).unwrap_or(u32::MAX);
         crate::MeshAdjacency::welded(mesh, vertices.collect())
     }
+}
+
+/// [`Rig::position`], of a vertex that need be in no rig.
+pub(crate) fn posed_position(influences: &[Influence], offsets: &[Offset], pose: &Pose) -> DVec3 {
+    let carried = (0..).zip(influences).map(|(number, influence)| {
+        let of_it = offsets.iter().filter(|offset| offset.influence == number);
+        let moved = of_it.fold(influence.position.as_dvec3(), |sum, offset| {
+            sum + pose.weights[offset.morph as usize] * offset.by.as_dvec3()
+        });
+        let at = pose.to_scene[influence.carrier as usize].transform_point3(moved);
+        influence.weight * at
+    });
+    carried.sum()
 }
 
 impl super::Channel {

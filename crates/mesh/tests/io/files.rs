@@ -112,6 +112,7 @@ impl Gltf {
     /// Adds f32 as an accessor of this shape, such as VEC3.
     pub(crate) fn floats(&mut self, values: &[f32], shape: &str) -> usize {
         let size = match shape {
+            "SCALAR" => 1,
             "VEC3" => 3,
             "VEC4" => 4,
             _ => 16,

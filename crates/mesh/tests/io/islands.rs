@@ -121,3 +121,23 @@ fn a_file_of_nothing_else_is_refused() {
     // What has no faces says so, whatever its vertices.
     assert_eq!(parse(Format::Obj, b"v nan 0 0\n").unwrap_err().to_string(), "has no faces");
 }
+
+#[test]
+fn gltf_faces_of_such_vertices_are_dropped() {
+    // A face each of sound vertices and of one that is nowhere; in a scene that stands still, and in one
+    // whose mesh is placed twice.
+    let mut positions = crate::files::CORNERS.to_vec();
+    positions.extend([f32::NAN, 0.0, 0.0]);
+    for (nodes, faces) in [(r#"{"mesh": 0}"#, 1), (r#"{"mesh": 0}, {"mesh": 0}"#, 2)] {
+        let mut gltf = crate::files::Gltf::default();
+        gltf.floats(&positions, "VEC3");
+        gltf.shorts(&[0, 1, 2, 0, 1, 3]);
+        let bytes = gltf.glb(&format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1}}]}}],
+            "nodes": [{nodes}]"#
+        ));
+        let dropped = Dropped { vertices: faces, faces };
+        let place = "meshes[0].primitives[0]: vertex 3 is at (NaN, 0, 0), ";
+        check(Format::Gltf, &bytes, &vec![[0, 1, 2]; faces], dropped, place);
+    }
+}

@@ -7,4 +7,5 @@ mod gltf;
 mod hostile;
 mod islands;
 mod models;
+mod rigs;
 mod text;

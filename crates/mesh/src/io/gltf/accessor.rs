@@ -85,6 +85,33 @@ impl<'a> Elements<'a> {
             .read(document, accessor, place)
     }
 
+    /// Times of keys.
+    pub(super) fn times(
+        document: &'a Document<'_>,
+        accessor: usize,
+        place: &Place,
+    ) -> Result<Self, ReadError> {
+        let components = &[ComponentType::F32];
+        Wanted { shape: Type::Scalar, components, name: "SCALAR of floats" }
+            .read(document, accessor, place)
+    }
+
+    /// Values at keys, numbers or vectors.
+    pub(super) fn curve_values(
+        document: &'a Document<'_>,
+        accessor: usize,
+        shape: Type,
+        place: &Place,
+    ) -> Result<Self, ReadError> {
+        use ComponentType::{F32, I8, I16, U8, U16};
+        let name = match shape {
+            Type::Scalar => "SCALAR of numbers",
+            Type::Vec3 => "VEC3 of numbers",
+            _ => "VEC4 of numbers",
+        };
+        Wanted { shape, components: &[F32, I8, U8, I16, U16], name }.read(document, accessor, place)
+    }
+
     pub(super) fn count(&self) -> usize {
         self.count
     }

@@ -1,60 +1,126 @@
 //! glTF 2.0 and GLB: Khronos Group, glTF 2.0 Specification, 2.0.1, 2021.
 //!
 //! What is drawn is the default scene, or all scenes if none is, or all nodes if there is no scene.
-//! Transforms are applied in f64. Skinned meshes are drawn in the rest pose of the scene (§3.7.3.3
-//! of the specification: joint transform times inverse bind matrix, the node's own transform
-//! unused), morph targets at weight 0. Where a transform mirrors, triangles are turned, so that the
-//! outside stays outside. Points and lines are left out.
+//! Transforms are applied in f64. Skinned meshes follow their joints alone (§3.7.3.3 of the
+//! specification: joint transform times inverse bind matrix, the node's own transform unused); morph
+//! targets are added by the weights of the node, else of the mesh, else not at all. Where a transform
+//! mirrors, triangles are turned, so that the outside stays outside. Points and lines are left out.
+//!
+//! A scene in which nothing can move and no mesh is placed twice is read by `still.rs`, any other by
+//! `moving.rs`, as a rig.
 //!
 //! The crate `gltf` parses the container and the JSON; its validation and its accessor readers are
 //! not used, because at 1.4 they panic on indices, counts and strides that are out of range.
 //! Integer positions (`KHR_mesh_quantization`) are read too.
 
 mod accessor;
+mod animation;
 mod document;
+mod moving;
 mod scene;
 mod skin;
+mod still;
+mod welded;
 
 use std::path::Path;
 
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked::Valid;
-use glam::{DVec3, Vec3};
-use rustc_hash::FxHashMap;
+use glam::DVec3;
 
+use super::ReadOptions;
 use super::error::{Fault, Place, ReadError};
-use super::parts::{self, Model, Parts};
-use crate::{MAX_TRIANGLES, MeshError};
+use super::parts::{Model, Parts};
 use accessor::Elements;
-use document::Document;
+use document::{Document, object};
+use moving::Moving;
 use scene::Nodes;
-use skin::Placement;
+use still::Still;
 
 /// Reads a glTF or GLB file. Files it names are looked for in `folder`.
-pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Model, ReadError> {
+pub(super) fn parse(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    &ReadOptions { strict }: &ReadOptions,
+) -> Result<Model, ReadError> {
     let document = Document::parse(bytes, folder)?;
     let nodes = Nodes::of(&document.root)?;
-    let mut welded = Welded::default();
-    let mut parts = Parts::default();
-    for index in nodes.drawn(&document.root)? {
-        let node = &document.root.nodes[index];
-        let Some(mesh_index) = node.mesh.map(|mesh| mesh.value()) else { continue };
-        let place = Place::Json(format!("nodes[{index}]"));
-        let mesh = document::object(&document.root.meshes, mesh_index, "meshes", &place)?;
-        let mut names = [&node.name, &mesh.name].into_iter().flatten();
-        let name = names.next().cloned().unwrap_or_else(|| format!("node {index}"));
+    let drawn = nodes.drawn(&document.root)?;
+    match Moving::new(&document, &nodes, &drawn, strict)? {
+        Some(moving) => read(&document, &drawn, moving),
+        None => read(&document, &drawn, Still::new(&nodes, strict)),
+    }
+}
+
+/// What takes the triangles of a scene.
+trait Surface {
+    fn triangle_count(&self) -> usize;
+    fn add(&mut self, piece: &Piece<'_>) -> Result<(), ReadError>;
+    fn into_model(self, parts: Parts, materials: Parts) -> Result<Model, ReadError>;
+}
+
+/// The triangles of one primitive at one node.
+struct Piece<'a> {
+    document: &'a Document<'a>,
+    node: usize,
+    mesh: usize,
+    primitive: &'a Primitive,
+    place: Place,
+    /// In the primitive's own vertices, which may be out of range.
+    triangles: Vec<[u32; 3]>,
+    positions: Elements<'a>,
+}
+
+impl Piece<'_> {
+    /// Where a vertex is stored.
+    fn position(&self, vertex: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|i| self.positions.real(vertex, i)))
+    }
+}
+
+/// Hands the primitives at the `drawn` nodes to `surface`, one after the other.
+fn read(
+    document: &Document<'_>,
+    drawn: &[usize],
+    mut surface: impl Surface,
+) -> Result<Model, ReadError> {
+    let (mut parts, mut materials) = (Parts::default(), Parts::default());
+    for &node in drawn {
+        let Some(mesh_index) = document.root.nodes[node].mesh.map(|mesh| mesh.value()) else {
+            continue;
+        };
+        let place = Place::Json(format!("nodes[{node}]"));
+        let mesh = object(&document.root.meshes, mesh_index, "meshes", &place)?;
+        let mut names = [&document.root.nodes[node].name, &mesh.name].into_iter().flatten();
+        let name = names.next().cloned().unwrap_or_else(|| format!("node {node}"));
         for (number, primitive) in mesh.primitives.iter().enumerate() {
             let several = mesh.primitives.len() > 1;
             let name = if several { format!("{name}/{number}") } else { name.clone() };
-            parts.begin(name, welded.triangles.len());
             let place = Place::Json(format!("meshes[{mesh_index}].primitives[{number}]"));
-            if let Some(triangles) = triangles(&document, primitive, &place)? {
-                let placement = Placement::new(&document, &nodes, index, primitive)?;
-                welded.add(&document, primitive, &triangles, &placement, &place)?;
+            parts.begin(name, surface.triangle_count());
+            materials.begin(material(document, primitive, &place)?, surface.triangle_count());
+            if let Some(triangles) = triangles(document, primitive, &place)? {
+                let positions = positions(document, primitive, &place)?;
+                let mesh = mesh_index;
+                let piece = Piece { document, node, mesh, primitive, place, triangles, positions };
+                surface.add(&piece)?;
             }
         }
     }
-    parts::model(welded.positions, welded.triangles, parts, Parts::default())
+    surface.into_model(parts, materials)
+}
+
+/// The name of a primitive's material, else "material 3"; empty if it has none.
+fn material(
+    document: &Document<'_>,
+    primitive: &Primitive,
+    place: &Place,
+) -> Result<String, ReadError> {
+    let Some(index) = primitive.material.map(|material| material.value()) else {
+        return Ok(String::new());
+    };
+    let material = object(&document.root.materials, index, "materials", place)?;
+    Ok(material.name.clone().unwrap_or_else(|| format!("material {index}")))
 }
 
 /// The triangles of a primitive in its own vertices, which may be out of range; `None` if it is
@@ -105,71 +171,4 @@ fn positions<'a>(
     let positions = primitive.attributes.get(&Valid(Semantic::Positions));
     let missing = || Fault::Missing { missing: "attribute POSITION" }.at(place.clone());
     Elements::positions(document, positions.ok_or_else(missing)?.value(), place)
-}
-
-/// All triangles of the scene; vertices at one position are one.
-#[derive(Default)]
-struct Welded {
-    positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    /// Vertices by the bits of their coordinates.
-    known: FxHashMap<[u32; 3], u32>,
-}
-
-impl Welded {
-    fn add(
-        &mut self,
-        document: &Document<'_>,
-        primitive: &Primitive,
-        triangles: &[[u32; 3]],
-        placement: &Placement<'_>,
-        place: &Place,
-    ) -> Result<(), ReadError> {
-        let count = self.triangles.len() + triangles.len();
-        if count > MAX_TRIANGLES {
-            return Err(MeshError::TooManyTriangles { count }.into());
-        }
-        let positions = positions(document, primitive, place)?;
-        // For each vertex of the primitive its vertex of the scene, once it is used.
-        let mut welded = vec![u32::MAX; positions.count()];
-        self.triangles.reserve(triangles.len());
-        for &triangle in triangles {
-            let mut corners = [0; 3];
-            for (corner, &vertex) in corners.iter_mut().zip(&triangle) {
-                let vertex_count = positions.count() as u64;
-                let slot = welded.get_mut(vertex as usize).ok_or_else(|| {
-                    let vertex = i64::from(vertex);
-                    Fault::VertexOutOfRange { vertex, vertex_count }.at(place.clone())
-                })?;
-                if *slot == u32::MAX {
-                    let index = vertex as usize;
-                    let stored = DVec3::from_array([0, 1, 2].map(|i| positions.real(index, i)));
-                    let position =
-                        placement.apply(index, stored).map_err(|f| f.at(place.clone()))?;
-                    *slot = self.vertex(position, vertex).map_err(|f| f.at(place.clone()))?;
-                }
-                *corner = *slot;
-            }
-            let [a, b, c] = corners;
-            let mirrored = placement.mirrors(triangle[0] as usize);
-            self.triangles.push(if mirrored { [a, c, b] } else { corners });
-        }
-        Ok(())
-    }
-
-    /// The vertex at this position; `source` is its number in the file.
-    fn vertex(&mut self, position: DVec3, source: u32) -> Result<u32, Fault> {
-        // Adding 0 turns −0 into 0.
-        let position = position.as_vec3() + Vec3::ZERO;
-        if !position.is_finite() {
-            let (vertex, position) = (u64::from(source), position.to_array());
-            return Err(Fault::NotFinite { vertex, position });
-        }
-        let key = position.to_array().map(f32::to_bits);
-        Ok(*self.known.entry(key).or_insert_with(|| {
-            self.positions.push(position);
-            // At most three to a triangle, and those are counted.
-            u32::try_from(self.positions.len() - 1).unwrap_or(u32::MAX)
-        }))
-    }
 }

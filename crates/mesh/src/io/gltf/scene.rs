@@ -1,18 +1,30 @@
 //! Where the nodes of a document are.
 
 use ::gltf::json;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 
 use super::document::object;
 use crate::io::error::{Fault, Place, ReadError};
+use crate::rig::{Local, Node};
 
 /// The nodes of a document as a forest.
 #[derive(Debug)]
 pub(super) struct Nodes {
     /// For each node its transform to the scene.
-    transforms: Vec<DMat4>,
+    transforms: Vec<DAffine3>,
     /// Nodes that are no one's child.
     roots: Vec<usize>,
+    /// All of them, parents before children, each with its parent.
+    order: Vec<(usize, Option<usize>)>,
+}
+
+/// The space in which a node stands still.
+#[derive(Clone, Copy)]
+pub(super) struct Base {
+    /// The nearest node that moves: itself or an ancestor. `None` is the scene.
+    pub(super) node: Option<u32>,
+    /// From the node to there.
+    pub(super) to_base: DAffine3,
 }
 
 impl Nodes {
@@ -32,25 +44,57 @@ impl Nodes {
         }
         let roots: Vec<usize> = (0..root.nodes.len()).filter(|&node| !has_parent[node]).collect();
         let mut transforms = vec![None; root.nodes.len()];
-        let mut open: Vec<(usize, DMat4)> = roots.iter().map(|&n| (n, DMat4::IDENTITY)).collect();
-        while let Some((index, parent)) = open.pop() {
-            let transform = parent * local_transform(&root.nodes[index]);
+        let mut order = Vec::with_capacity(root.nodes.len());
+        let mut open: Vec<_> = roots.iter().map(|&n| (n, None, DAffine3::IDENTITY)).collect();
+        while let Some((index, parent, to_scene)) = open.pop() {
+            order.push((index, parent));
+            let transform = to_scene * local(&root.nodes[index]).to_affine();
             transforms[index] = Some(transform);
             let children = root.nodes[index].children.iter().flatten();
-            open.extend(children.map(|child| (child.value(), transform)));
+            open.extend(children.map(|child| (child.value(), Some(index), transform)));
         }
         // Whatever has a parent and hangs from no root goes round in a circle.
-        let reached = |(index, transform): (usize, Option<DMat4>)| {
+        let reached = |(index, transform): (usize, Option<DAffine3>)| {
             transform.ok_or_else(|| Fault::Cycle.at(place(index)))
         };
         let transforms =
             transforms.into_iter().enumerate().map(reached).collect::<Result<_, _>>()?;
-        Ok(Self { transforms, roots })
+        Ok(Self { transforms, roots, order })
     }
 
     /// The transform of a node to the scene.
-    pub(super) fn transform(&self, node: usize) -> DMat4 {
+    pub(super) fn transform(&self, node: usize) -> DAffine3 {
         self.transforms[node]
+    }
+
+    /// All nodes as those of a rig, of which some move.
+    pub(super) fn of_rig(&self, root: &json::Root, moves: &[bool]) -> Vec<Node> {
+        let mut nodes: Vec<Node> = (root.nodes.iter().zip(moves))
+            .map(|(node, &moves)| {
+                let name = node.name.clone().unwrap_or_default();
+                Node { name, parent: None, rest: local(node), moves }
+            })
+            .collect();
+        for &(index, parent) in &self.order {
+            nodes[index].parent = parent.and_then(|parent| u32::try_from(parent).ok());
+        }
+        nodes
+    }
+
+    /// For each node the space in which it stands still, if only those that are told move.
+    pub(super) fn bases(&self, root: &json::Root, moves: &[bool]) -> Vec<Base> {
+        let scene = Base { node: None, to_base: DAffine3::IDENTITY };
+        let mut bases = vec![scene; moves.len()];
+        for &(index, parent) in &self.order {
+            let of_parent = parent.map_or(scene, |parent| bases[parent]);
+            bases[index] = if moves[index] {
+                Base { node: u32::try_from(index).ok(), to_base: DAffine3::IDENTITY }
+            } else {
+                let to_base = of_parent.to_base * local(&root.nodes[index]).to_affine();
+                Base { to_base, ..of_parent }
+            };
+        }
+        bases
     }
 
     /// The nodes to draw, each once, parents before their children.
@@ -86,20 +130,16 @@ fn place(node: usize) -> Place {
     Place::Json(format!("nodes[{node}]"))
 }
 
-fn local_transform(node: &json::Node) -> DMat4 {
+/// Where a node is in its parent's space.
+fn local(node: &json::Node) -> Local {
     if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
+        let matrix = DMat4::from_cols_array(&matrix.map(f64::from));
+        return Local::Matrix(DAffine3::from_mat4(matrix));
     }
     let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |quaternion| {
-        // Stored in f32, so of unit length only nearly.
-        let quaternion = DQuat::from_array(quaternion.0.map(f64::from));
-        let length = quaternion.length();
-        if length > 0.0 { quaternion / length } else { DQuat::IDENTITY }
-    });
-    DMat4::from_scale_rotation_translation(
-        node.scale.map_or(DVec3::ONE, vector),
-        rotation,
-        node.translation.map_or(DVec3::ZERO, vector),
-    )
+    Local::Trs {
+        translation: node.translation.map_or(DVec3::ZERO, vector),
+        rotation: node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from))),
+        scale: node.scale.map_or(DVec3::ONE, vector),
+    }
 }
