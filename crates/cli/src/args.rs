@@ -7,7 +7,10 @@ use drypoint_lines::LineClass;
 use drypoint_mesh::{EdgeFilter, shapes};
 use glam::DVec3;
 
+use crate::animation::AnimationArgs;
+use crate::frames::FrameArgs;
 use crate::fusion::FusionArgs;
+use crate::view::ViewArgs;
 
 /// Draws the contours of triangle meshes as clean vectors, hidden lines removed
 #[derive(Debug, Parser)]
@@ -97,6 +100,10 @@ pub(crate) struct DrawArgs {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
     #[command(flatten)]
+    pub(crate) animation: AnimationArgs,
+    #[command(flatten)]
+    pub(crate) frames: FrameArgs,
+    #[command(flatten)]
     pub(crate) lines: LineArgs,
     /// With --show: edges to group, those that can be seen as contours, or all [default: convex, or
     /// those of the .patches file]
@@ -126,53 +133,6 @@ pub(crate) enum Show {
     Patches,
     /// As patches, but only those that may hold a contour edge from here; the rest is grey
     Survivors,
-}
-
-#[derive(Debug, Args)]
-#[command(next_help_heading = "View")]
-pub(crate) struct ViewArgs {
-    /// Where to look from, in the file's own coordinates
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["view", "azimuth", "elevation", "distance"])]
-    pub(crate) eye: Option<DVec3>,
-    /// Where to look at [default: center of the bounding box]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    pub(crate) target: Option<DVec3>,
-    /// Direction that points up on the page [default: 0,1,0; from straight above or below, what
-    /// lies ahead]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    pub(crate) up: Option<DVec3>,
-    /// Vertical field of view in degrees [default: 30]
-    #[arg(long, value_name = "DEGREES", value_parser = number, conflicts_with = "ortho")]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) fov: Option<f64>,
-    /// Look from this side, at a distance that fills the page [default: iso]
-    #[arg(long, value_enum, conflicts_with_all = ["azimuth", "elevation"])]
-    pub(crate) view: Option<Side>,
-    /// Look from this angle around the up axis, in degrees: 0 from the front, 90 from the right
-    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
-    pub(crate) azimuth: Option<f64>,
-    /// Look from this angle above the horizon, in degrees, -90 to 90
-    #[arg(long, value_name = "DEGREES", value_parser = elevation, allow_hyphen_values = true)]
-    pub(crate) elevation: Option<f64>,
-    /// Distance from the target, in the file's unit [default: so that the model fills the page]
-    #[arg(long, value_name = "D", value_parser = number, allow_hyphen_values = true)]
-    #[arg(conflicts_with = "ortho")]
-    pub(crate) distance: Option<f64>,
-    /// Draw without perspective
-    #[arg(long)]
-    pub(crate) ortho: bool,
-    /// Height of the page in the file's unit, without perspective [default: so that the model
-    /// fills the page]
-    #[arg(long, value_name = "H", value_parser = number, requires = "ortho")]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) height: Option<f64>,
-    /// Size of the page in pixels
-    #[arg(long, value_name = "WxH", default_value = "1000x1000", value_parser = size)]
-    pub(crate) size: [u32; 2],
-    /// Free border around a model that fills the page, in pixels [default: 4 % of the shorter side]
-    #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
-    pub(crate) margin: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -265,6 +225,8 @@ pub(crate) struct ExtractArgs {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
+    pub(crate) animation: AnimationArgs,
+    #[command(flatten)]
     pub(crate) fusion: FusionArgs,
 }
 
@@ -278,18 +240,6 @@ pub(crate) struct InfoArgs {
     /// List the position of every vertex, in the order that `extract` counts in
     #[arg(long)]
     pub(crate) vertices: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Side {
-    Front,
-    Back,
-    Left,
-    Right,
-    Top,
-    Bottom,
-    /// From the front, the right and above, each as much
-    Iso,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -351,7 +301,7 @@ impl From<Edges> for EdgeFilter {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err("the number must be finite".to_owned()),
@@ -359,13 +309,7 @@ fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-fn elevation(text: &str) -> Result<f64, String> {
-    let degrees = number(text)?;
-    let seen = (-90.0..=90.0).contains(&degrees);
-    seen.then_some(degrees).ok_or("the angle must be within -90 and 90".to_owned())
-}
-
-fn vector(text: &str) -> Result<DVec3, String> {
+pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
     match numbers[..] {
         [x, y, z] if numbers.iter().all(|n| n.abs() <= f64::from(f32::MAX)) => {
@@ -374,15 +318,4 @@ fn vector(text: &str) -> Result<DVec3, String> {
         [_, _, _] => Err(format!("coordinates must be within ±{:e}", f32::MAX)),
         _ => Err(format!("three numbers with commas are wanted, not {}", numbers.len())),
     }
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    /// Most pixels a side: a PNG of this size is 1 GiB in memory.
-    const MOST: u32 = 16_384;
-    let parts = text.split_once(['x', 'X', '×']).ok_or("WIDTHxHEIGHT is wanted, as 800x600")?;
-    let side = |text: &str| match text.trim().parse() {
-        Ok(pixels) if (1..=MOST).contains(&pixels) => Ok(pixels),
-        _ => Err(format!("'{text}' is no number of pixels from 1 to {MOST}")),
-    };
-    Ok([side(parts.0)?, side(parts.1)?])
 }

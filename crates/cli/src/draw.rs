@@ -13,6 +13,7 @@ use drypoint_mesh::{EdgeFilter, EdgeId, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
 use crate::args::{Class, DrawArgs, Hidden, LineArgs, Show};
+use crate::frames;
 use crate::gpu::{self, Api};
 use crate::output::{Output, print_json, tell};
 use crate::patches;
@@ -50,15 +51,30 @@ struct Drawn {
     hidden_length: f64,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Format {
+/// The kind of file that a picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
     Svg,
     Png,
 }
 
+impl Format {
+    /// How the names of its files end.
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+        }
+    }
+}
+
 pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
+    if let Some(folder) = &args.frames.frames {
+        return frames::run(args, folder);
+    }
+    args.frames.check_without()?;
     let style = style(&args.lines)?;
-    let options = options(&args.lines)?;
+    check(&args.lines)?;
     let shown = shown(args)?;
     if let Some(api) = args.method.api() {
         return run_on_gpu(api, args, &style);
@@ -72,7 +88,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     }
     // A place that cannot be written is told before the work, not after.
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
-    let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    let (source, loaded) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
     let patches = match loaded {
@@ -81,18 +97,20 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
         None => None,
     };
     let scene = Scene { source: &source, adjacency: &adjacency, camera: &camera };
-    let drawing = scene.draw(patches.as_ref(), shown, (&args.lines, &options));
-    if drawing.layers.iter().all(|layer| layer.visible_length() == 0.0) && drawing.areas.is_empty()
-    {
+    let surface = {
+        let _stage = Stage::new("sorting faces");
+        Surface::new(&source, &adjacency, &args.lines)
+    };
+    let drawing = {
+        let _stage = Stage::new("finding what is visible");
+        scene.draw(&surface, (patches.as_ref(), shown), &args.lines)
+    };
+    if is_blank(&drawing) {
         tell(&format!("drypoint: no line of {} is visible on the page", source.name));
     }
-    let title = source::stem(&args.model);
-    let picture = match format {
-        Format::Svg => to_svg(&drawing, &style, &title).into_bytes(),
-        Format::Png => {
-            let _stage = Stage::new("rasterising");
-            to_png(&drawing, &style).map_err(|error| error.to_string())?
-        }
+    let picture = {
+        let _stage = Stage::new("inking");
+        ink(&drawing, (&style, format), &source::stem(&args.model))?
     };
     // First what may fail, so that no picture is left behind by a run that did.
     if args.json {
@@ -119,7 +137,7 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
         return Err(format!("{}: --method {api} draws .png alone", path.display()));
     }
     let output = Output::open(&path)?;
-    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    let (source, patches) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
     let patches = patches.map(|patches| chosen(args, patches)).transpose()?;
@@ -135,6 +153,17 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
     Ok(())
 }
 
+/// The model in the pose that is asked for, and its patches if it comes with some. Those are of the mesh
+/// as it was read, any other that can move is drawn through its rig.
+fn load(args: &DrawArgs) -> Result<(Source, Option<PatchSet>), String> {
+    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    if patches.is_some() {
+        args.animation.check_patches(&args.model)?;
+        return Ok((source, patches));
+    }
+    Ok((source.in_pose(&args.animation)?, None))
+}
+
 /// The edges of a mesh of which something can be seen.
 fn visible_adjacency(source: &Source) -> Result<MeshAdjacency, String> {
     let adjacency = source.adjacency();
@@ -145,7 +174,7 @@ fn visible_adjacency(source: &Source) -> Result<MeshAdjacency, String> {
 }
 
 /// What of the decomposition is asked for; options that would change nothing are refused.
-fn shown(args: &DrawArgs) -> Result<Option<Shown>, String> {
+pub(crate) fn shown(args: &DrawArgs) -> Result<Option<Shown>, String> {
     let shown = match args.show {
         Show::Lines => None,
         Show::Patches => Some(Shown::Patches),
@@ -163,18 +192,35 @@ fn shown(args: &DrawArgs) -> Result<Option<Shown>, String> {
 }
 
 /// Builds patches to show.
-fn build(args: &DrawArgs, source: &Source, adjacency: &MeshAdjacency) -> Result<PatchSet, String> {
+pub(crate) fn build(
+    args: &DrawArgs,
+    source: &Source,
+    adjacency: &MeshAdjacency,
+) -> Result<PatchSet, String> {
     let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
     patches::build(source, adjacency, filter, &args.fusion)
 }
 
 /// The patches of a file, if no option asks for others.
-fn chosen(args: &DrawArgs, patches: PatchSet) -> Result<PatchSet, String> {
+pub(crate) fn chosen(args: &DrawArgs, patches: PatchSet) -> Result<PatchSet, String> {
     match args.fusion.first_given() {
         Some(option) => {
             Err(format!("{option}: the patches of {} are built already", args.model.display()))
         }
         None => source::holding(patches, args.edges, &args.model),
+    }
+}
+
+/// What of a surface is the same from wherever it is looked at.
+pub(crate) struct Surface<'a> {
+    options: LineOptions<'static>,
+    occluders: Occluders<'a>,
+}
+
+impl<'a> Surface<'a> {
+    /// Finds it, without progress: maybe one of many.
+    pub(crate) fn new(source: &'a Source, adjacency: &'a MeshAdjacency, args: &LineArgs) -> Self {
+        Self { options: options(args), occluders: Occluders::new(source.mesh(), adjacency) }
     }
 }
 
@@ -186,31 +232,27 @@ pub(crate) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Finds the lines, what hides them, and what of the decomposition is visible.
-    fn draw(
+    /// Finds the lines, what of them is visible, and what of the decomposition.
+    pub(crate) fn draw(
         &self,
-        patches: Option<&PatchSet>,
-        shown: Option<Shown>,
-        (args, options): (&LineArgs, &LineOptions),
+        surface: &Surface<'_>,
+        (patches, shown): (Option<&PatchSet>, Option<Shown>),
+        args: &LineArgs,
     ) -> Drawing {
         let Self { adjacency, camera, .. } = *self;
         let mesh = self.source.mesh();
         let wanted = classes(args).contains(&Class::Contour);
         let contours = if wanted { self.contours(patches) } else { Vec::new() };
+        let Surface { options, occluders } = surface;
         let segments = Segments::new(mesh, adjacency, &contours, options);
-        let occluders = {
-            let _stage = Stage::new("sorting faces");
-            Occluders::new(mesh, adjacency)
-        };
-        let _stage = Stage::new("finding what is visible");
         let params =
             VisibilityParams { drop_specks: args.specks.unwrap_or(SPECKS), ..Default::default() };
-        let mut drawing = Drawing::new(&occluders, &segments, camera, &params);
+        let mut drawing = Drawing::new(occluders, &segments, camera, &params);
         drawing
             .layers
             .retain(|layer| classes(args).iter().any(|&class| layer.class == class.into()));
         if let (Some(shown), Some(patches)) = (shown, patches) {
-            drawing.areas = show::areas(patches, &occluders, adjacency, camera, shown);
+            drawing.areas = show::areas(patches, occluders, adjacency, camera, shown);
         }
         drawing
     }
@@ -236,26 +278,30 @@ fn classes(args: &LineArgs) -> &[Class] {
     args.lines.as_deref().unwrap_or(CLASSES)
 }
 
-fn options(args: &LineArgs) -> Result<LineOptions<'static>, String> {
-    let crease = classes(args).contains(&Class::Crease);
+/// Refuses options of lines that make no sense.
+pub(crate) fn check(args: &LineArgs) -> Result<(), String> {
     match args.crease_angle {
         Some(angle) if !(0.0..=180.0).contains(&angle) => {
-            return Err(format!("--crease-angle: {angle} is not within 0 and 180"));
+            Err(format!("--crease-angle: {angle} is not within 0 and 180"))
         }
-        Some(_) if !crease => {
-            return Err("--crease-angle: no creases are drawn without --lines crease".to_owned());
+        Some(_) if !classes(args).contains(&Class::Crease) => {
+            Err("--crease-angle: no creases are drawn without --lines crease".to_owned())
         }
-        _ => {}
+        _ => Ok(()),
     }
+}
+
+fn options(args: &LineArgs) -> LineOptions<'static> {
+    let crease = classes(args).contains(&Class::Crease);
     let least = args.crease_angle.unwrap_or(CREASE_ANGLE).to_radians();
-    Ok(LineOptions {
+    LineOptions {
         boundary: classes(args).contains(&Class::Boundary),
         crease_angle: crease.then_some(least),
         ..LineOptions::default()
-    })
+    }
 }
 
-fn style(args: &LineArgs) -> Result<Style, String> {
+pub(crate) fn style(args: &LineArgs) -> Result<Style, String> {
     if !(0.05..=1000.0).contains(&args.width) {
         return Err(format!("--width: {} is not within 0.05 and 1000 pixels", args.width));
     }
@@ -284,6 +330,24 @@ fn color(option: &str, text: &str) -> Result<Color, String> {
         .map_err(|_| format!("{option}: '{text}' is no CSS colour, as black, #1a2b3c"))?
         .to_rgba8();
     Ok(Color { red, green, blue, alpha })
+}
+
+/// Whether nothing is on the page.
+pub(crate) fn is_blank(drawing: &Drawing) -> bool {
+    let is_blank = |layer: &Layer| layer.visible_length() == 0.0;
+    drawing.layers.iter().all(is_blank) && drawing.areas.is_empty()
+}
+
+/// The picture as a file.
+pub(crate) fn ink(
+    drawing: &Drawing,
+    (style, format): (&Style, Format),
+    title: &str,
+) -> Result<Vec<u8>, String> {
+    match format {
+        Format::Svg => Ok(to_svg(drawing, style, title).into_bytes()),
+        Format::Png => to_png(drawing, style).map_err(|error| error.to_string()),
+    }
 }
 
 fn format_of(path: &Path) -> Result<Format, String> {

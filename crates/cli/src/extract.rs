@@ -10,17 +10,18 @@ use crate::args::{ExtractArgs, Method};
 use crate::gpu::{self, Api};
 use crate::output::{print, print_json};
 use crate::patches;
+use crate::rigged;
 use crate::source::{Source, holding, is_patches, load_patches};
 
 /// What was found, in the shape that scripts read.
 #[derive(Debug, Serialize)]
-struct Found {
+pub(crate) struct Found {
     method: &'static str,
     edges: usize,
-    patches: usize,
+    pub(crate) patches: usize,
     patches_tested: usize,
     patches_accepted: usize,
-    super_patches: usize,
+    pub(crate) super_patches: usize,
     super_patches_tested: usize,
     super_patches_accepted: usize,
     edges_tested: usize,
@@ -36,6 +37,9 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
         return Err(format!(
             "{option}: is for building patches: --method patches, wgpu or ash on a mesh"
         ));
+    }
+    if has_patches {
+        args.animation.check_patches(&args.model)?;
     }
     // What cannot be done is told before the mesh is read.
     args.method.and_then(Method::api).map_or(Ok(()), Api::check_feature)?;
@@ -59,7 +63,7 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     Ok(())
 }
 
-fn goes_through_patches(method: Method) -> bool {
+pub(crate) fn goes_through_patches(method: Method) -> bool {
     method != Method::BruteForce
 }
 
@@ -73,6 +77,9 @@ fn viewpoint(args: &ExtractArgs) -> Result<Viewpoint, String> {
 
 fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
     let source = Source::load(&args.model)?;
+    if args.animation.find(&source)?.is_some() {
+        return rigged::extract(args, &source, viewpoint);
+    }
     let adjacency = source.adjacency();
     let filter = args.edges.map_or(EdgeFilter::Convex, Into::into);
     let mut contours = Vec::new();
@@ -119,7 +126,7 @@ fn with_patches(patches: &PatchSet, statistics: Statistics, contours: &[EdgeId])
 }
 
 /// Sorts the pairs and leaves one of those that several wings of a non-manifold edge share.
-fn found(
+pub(crate) fn found(
     method: &'static str,
     edges: usize,
     statistics: Statistics,

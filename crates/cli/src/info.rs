@@ -1,6 +1,7 @@
 //! `drypoint info`: what a mesh is made of.
 
 use drypoint_mesh::Aabb;
+use drypoint_mesh::rig::{Animation, Rig, Skin};
 use glam::Vec3;
 use serde::Serialize;
 
@@ -24,8 +25,32 @@ struct Report<'a> {
     concave: usize,
     bounds: Bounds,
     parts: Vec<Part<'a>>,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    motion: Option<Motion<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     positions: Option<Vec<[f32; 3]>>,
+}
+
+/// What of a model can move, and how.
+#[derive(Debug, Serialize)]
+struct Motion<'a> {
+    animations: Vec<Moves<'a>>,
+    /// Places of meshes that are placed more than once.
+    instances: usize,
+    rigid_parts: usize,
+    /// Parts of one shape share it.
+    rigid_shapes: usize,
+    /// How much of the edges of two faces or more keeps its shape, 0 to 1.
+    rigid_share: f64,
+}
+
+/// An animation.
+#[derive(Debug, Serialize)]
+struct Moves<'a> {
+    name: &'a str,
+    /// In seconds.
+    duration: f64,
+    channels: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -47,7 +72,9 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), String> {
     let none = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
     let Aabb { min, max } = source.mesh().bounds().unwrap_or(none);
     let parts = source.model.parts.iter();
+    let motion = source.model.rig.as_ref().map(|rig| motion(&source.name, rig)).transpose()?;
     let report = Report {
+        motion,
         faces: found.faces,
         vertices: found.vertices,
         welded_vertices: found.welded_vertices,
@@ -66,6 +93,22 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), String> {
             .then(|| source.mesh().positions().iter().map(Vec3::to_array).collect()),
     };
     if args.json { print_json(&report) } else { print(describe(&source.name, &report).as_bytes()) }
+}
+
+fn motion<'a>(name: &str, rig: &'a Rig) -> Result<Motion<'a>, String> {
+    let skin = Skin::new(rig).map_err(|error| format!("{name}: {error}"))?;
+    let moves = |animation: &'a Animation| Moves {
+        name: &animation.name,
+        duration: animation.duration(),
+        channels: animation.channels.len(),
+    };
+    Ok(Motion {
+        animations: rig.animations().iter().map(moves).collect(),
+        instances: rig.carriers().iter().filter(|carrier| carrier.mesh.is_some()).count(),
+        rigid_parts: skin.parts().len(),
+        rigid_shapes: skin.shapes().len(),
+        rigid_share: skin.rigid_share(),
+    })
 }
 
 /// The report for people to read.
@@ -90,11 +133,31 @@ fn describe(name: &str, report: &Report) -> String {
         text += "\n";
     }
     text += &format!("  bounds              {min:?} to {max:?}\n");
+    if let Some(motion) = &report.motion {
+        text += &describe_motion(motion);
+    }
     for part in &report.parts {
         text += &format!("  part                {} ({} faces)\n", part.name, part.faces);
     }
     for (index, [x, y, z]) in report.positions.iter().flatten().enumerate() {
         text += &format!("  vertex {index}: {x} {y} {z}\n");
+    }
+    text
+}
+
+fn describe_motion(motion: &Motion) -> String {
+    let mut text = String::new();
+    for (label, count, note) in [
+        ("rigid parts", motion.rigid_parts, "move as a whole"),
+        ("  shapes", motion.rigid_shapes, "that they have"),
+        ("instances", motion.instances, "of meshes that are placed more than once"),
+    ] {
+        text += &format!("  {label:<20}{count:>10}  {note}\n");
+    }
+    let percent = 100.0 * motion.rigid_share;
+    text += &format!("  rigid edges         {percent:>8.1} %  between faces of one part\n");
+    for (number, Moves { name, duration, channels }) in motion.animations.iter().enumerate() {
+        text += &format!("  animation {number:<10}{name} ({duration:.3} s, {channels} channels)\n");
     }
     text
 }

@@ -1,8 +1,11 @@
 //! The command `drypoint`.
 
+mod animation;
 mod args;
 mod draw;
 mod extract;
+mod folder;
+mod frames;
 mod fusion;
 mod gpu;
 mod info;
@@ -10,6 +13,7 @@ mod output;
 mod palette;
 mod patches;
 mod progress;
+mod rigged;
 mod show;
 mod source;
 mod view;

@@ -27,6 +27,8 @@ pub(crate) struct Source {
     /// As the user gave it, for messages.
     pub(crate) name: String,
     pub(crate) model: io::Model,
+    /// Whether the mesh is a pose of a rig, so that vertices that meet in it are not one for that.
+    pub(crate) is_posed: bool,
 }
 
 impl Source {
@@ -39,8 +41,8 @@ impl Source {
             let triangles = 0..u32::try_from(mesh.triangles().len()).map_err(|e| e.to_string())?;
             let run = |name: &str| io::Part { name: name.to_owned(), triangles: triangles.clone() };
             let (parts, materials) = (vec![run(shape)], vec![run("")]);
-            let model = io::Model { mesh, parts, materials, dropped: io::Dropped::default() };
-            return Ok(Self { model, name });
+            let model = io::Model { mesh, parts, materials, ..io::Model::default() };
+            return Ok(Self { model, name, is_posed: false });
         }
         if is_patches(model) {
             return Err(format!("{name}: is a patch file; a mesh is wanted here"));
@@ -49,7 +51,7 @@ impl Source {
             return Err(format!("{name}: is a folder, not a mesh file"));
         }
         let read = io::read(model).map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self { name, model: read })
+        Ok(Self { name, model: read, is_posed: false })
     }
 
     /// Reads a mesh for drawing, and with it the patches if `model` is a .patches file: that holds
@@ -84,7 +86,16 @@ impl Source {
     /// Pairs the mesh's half-edges.
     pub(crate) fn adjacency(&self) -> MeshAdjacency {
         let _stage = Stage::new("finding edges");
-        MeshAdjacency::new(self.mesh())
+        self.adjacency_in_silence()
+    }
+
+    /// The same, without progress: one of many.
+    pub(crate) fn adjacency_in_silence(&self) -> MeshAdjacency {
+        if self.is_posed {
+            MeshAdjacency::welded(self.mesh(), (0..).take(self.mesh().positions().len()).collect())
+        } else {
+            MeshAdjacency::new(self.mesh())
+        }
     }
 }
 

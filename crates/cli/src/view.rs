@@ -1,10 +1,14 @@
 //! From the options of a view to a camera.
 
+use std::borrow::Cow;
+
+use clap::{Args, ValueEnum};
 use drypoint_lines::{Camera, CameraError, Page};
 use drypoint_mesh::Mesh;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
-use crate::args::{Side, ViewArgs};
+use crate::args::{number, vector};
 
 /// In degrees, unless the user says otherwise.
 const FIELD_OF_VIEW: f64 = 30.0;
@@ -12,8 +16,103 @@ const FIELD_OF_VIEW: f64 = 30.0;
 /// Within this many degrees of straight up or down the up axis gives no direction on the page.
 const NEARLY_VERTICAL: f64 = 1e-6;
 
+/// Where to look from, and on what page.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "View")]
+pub(crate) struct ViewArgs {
+    /// Where to look from, in the file's own coordinates
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["view", "azimuth", "elevation", "distance"])]
+    pub(crate) eye: Option<DVec3>,
+    /// Where to look at [default: center of the bounding box]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) target: Option<DVec3>,
+    /// Direction that points up on the page [default: 0,1,0; from straight above or below, what
+    /// lies ahead]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+    /// Vertical field of view in degrees [default: 30]
+    #[arg(long, value_name = "DEGREES", value_parser = number, conflicts_with = "ortho")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) fov: Option<f64>,
+    /// Look from this side, at a distance that fills the page [default: iso]
+    #[arg(long, value_enum, conflicts_with_all = ["azimuth", "elevation"])]
+    pub(crate) view: Option<Side>,
+    /// Look from this angle around the up axis, in degrees: 0 from the front, 90 from the right
+    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) azimuth: Option<f64>,
+    /// Look from this angle above the horizon, in degrees, -90 to 90
+    #[arg(long, value_name = "DEGREES", value_parser = elevation, allow_hyphen_values = true)]
+    pub(crate) elevation: Option<f64>,
+    /// Distance from the target, in the file's unit [default: so that the model fills the page]
+    #[arg(long, value_name = "D", value_parser = number, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "ortho")]
+    pub(crate) distance: Option<f64>,
+    /// Draw without perspective
+    #[arg(long)]
+    pub(crate) ortho: bool,
+    /// Height of the page in the file's unit, without perspective [default: so that the model
+    /// fills the page]
+    #[arg(long, value_name = "H", value_parser = number, requires = "ortho")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) height: Option<f64>,
+    /// Size of the page in pixels
+    #[arg(long, value_name = "WxH", default_value = "1000x1000", value_parser = size)]
+    pub(crate) size: [u32; 2],
+    /// Free border around a model that fills the page, in pixels [default: 4 % of the shorter side]
+    #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
+    pub(crate) margin: Option<f64>,
+}
+
+/// A side to look from.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Side {
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+    /// From the front, the right and above, each as much
+    Iso,
+}
+
+/// Points that a view is to hold.
+pub(crate) trait Points {
+    /// Middle of the box around them.
+    fn center(&self) -> DVec3;
+    /// All of them.
+    fn points(&self) -> impl Iterator<Item = DVec3>;
+}
+
+impl Points for Cow<'_, Mesh> {
+    fn center(&self) -> DVec3 {
+        self.as_ref().center()
+    }
+
+    fn points(&self) -> impl Iterator<Item = DVec3> {
+        self.as_ref().points()
+    }
+}
+
+impl Points for Mesh {
+    fn center(&self) -> DVec3 {
+        self.bounds().map_or(DVec3::ZERO, |bounds| bounds.center())
+    }
+
+    fn points(&self) -> impl Iterator<Item = DVec3> {
+        self.triangles().iter().flatten().map(|&v| self.position(v).as_dvec3())
+    }
+}
+
 /// The camera that the options ask for.
-pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
+pub(crate) fn camera(args: &ViewArgs, model: &impl Points) -> Result<Camera, String> {
+    let page = page(args)?;
+    build(args, model, page).map_err(refusal)
+}
+
+/// The page that the options ask for; a distance that makes no sense is refused.
+fn page(args: &ViewArgs) -> Result<Page, String> {
     if let Some(distance) = args.distance.filter(|&distance| distance <= 0.0) {
         return Err(format!("--distance: {distance} is not above 0"));
     }
@@ -22,23 +121,71 @@ pub(crate) fn camera(args: &ViewArgs, mesh: &Mesh) -> Result<Camera, String> {
     if margin < 0.0 {
         return Err(format!("--margin: {margin} is below 0"));
     }
-    build(args, mesh, Page { width, height, margin }).map_err(|error| {
-        let option = match error {
-            CameraError::EyeAtTarget { .. } => "--eye",
-            CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
-            CameraError::FieldOfView { .. } => "--fov",
-            CameraError::Height { .. } => "--height",
-            CameraError::Page { .. } => "--size",
-            CameraError::Margin { .. } => "--margin",
-            CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
-        };
-        format!("{option}: {error}")
-    })
+    Ok(Page { width, height, margin })
 }
 
-fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError> {
-    let center = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.center());
-    let target = args.target.unwrap_or(center);
+/// Names the option that is to blame.
+fn refusal(error: CameraError) -> String {
+    let option = match error {
+        CameraError::EyeAtTarget { .. } => "--eye",
+        CameraError::NoUp | CameraError::UpParallel { .. } => "--up",
+        CameraError::FieldOfView { .. } => "--fov",
+        CameraError::Height { .. } => "--height",
+        CameraError::Page { .. } => "--size",
+        CameraError::Margin { .. } => "--margin",
+        CameraError::Coordinates { .. } | CameraError::NoDirection => "view",
+    };
+    format!("{option}: {error}")
+}
+
+/// Cameras that look at `target` from all sides, one for each of `turns`, in degrees around the up axis
+/// from where the options look from. All are as far away as the one that needs most room for what it
+/// sees, `model` of its index, unless the options say how far.
+pub(crate) fn turntable<P: Points>(
+    args: &ViewArgs,
+    target: DVec3,
+    turns: &[f64],
+    model: impl Fn(usize) -> P + Sync,
+) -> Result<Vec<Camera>, String> {
+    let page = page(args)?;
+    let is_settled = if args.ortho { args.height } else { args.distance };
+    let mut views: Vec<ViewArgs> = turns.iter().map(|&turn| turned(args, target, turn)).collect();
+    if is_settled.is_none() && args.eye.is_none_or(|_| args.ortho) {
+        let room = |(index, view): (usize, &ViewArgs)| {
+            let camera = build(view, &model(index), page)?;
+            Ok(if args.ortho {
+                camera.pixel_size(target) * f64::from(page.height)
+            } else {
+                camera.viewpoint().xyz().distance(target)
+            })
+        };
+        let rooms: Result<Vec<f64>, _> = views.par_iter().enumerate().map(room).collect();
+        let most = rooms.map_err(refusal)?.into_iter().fold(0.0, f64::max);
+        for view in &mut views {
+            *(if args.ortho { &mut view.height } else { &mut view.distance }) = Some(most);
+        }
+    }
+    let nothing = Mesh::default();
+    views.iter().map(|view| build(view, &nothing, page).map_err(refusal)).collect()
+}
+
+/// The same view of `target`, turned around the up axis.
+fn turned(args: &ViewArgs, target: DVec3, degrees: f64) -> ViewArgs {
+    let view = ViewArgs { target: Some(target), ..args.clone() };
+    if let Some(eye) = args.eye {
+        let up = turn_to(args.up.and_then(DVec3::try_normalize).unwrap_or(DVec3::Y));
+        let (sin, cos) = sin_cos(degrees);
+        let around_y =
+            DMat3::from_cols(DVec3::new(cos, 0.0, -sin), DVec3::Y, DVec3::new(sin, 0.0, cos));
+        let turn = up * around_y * up.transpose();
+        return ViewArgs { eye: Some(target + turn * (eye - target)), ..view };
+    }
+    let (azimuth, elevation) = angles(args);
+    ViewArgs { view: None, azimuth: Some(azimuth + degrees), elevation: Some(elevation), ..view }
+}
+
+fn build(args: &ViewArgs, model: &impl Points, page: Page) -> Result<Camera, CameraError> {
+    let target = args.target.unwrap_or_else(|| model.center());
     let (towards_viewer, up) = match args.eye {
         Some(eye) if eye == target => return Err(CameraError::EyeAtTarget { eye }),
         Some(eye) => (eye - target, args.up),
@@ -47,11 +194,13 @@ fn build(args: &ViewArgs, mesh: &Mesh, page: Page) -> Result<Camera, CameraError
     let fov = args.fov.unwrap_or(FIELD_OF_VIEW);
     let ahead = towards_viewer.normalize_or_zero();
     let points = || {
-        let mesh = mesh.triangles().iter().flatten().map(|&v| mesh.position(v).as_dvec3());
         // With every point its mirror image beyond the line of sight: so the view that fits them
         // has the target in its middle.
         let mirrored = move |p: DVec3| 2.0 * (target + (p - target).dot(ahead) * ahead) - p;
-        mesh.flat_map(move |p| [Some(p), args.target.is_some().then(|| mirrored(p))]).flatten()
+        model
+            .points()
+            .flat_map(move |p| [Some(p), args.target.is_some().then(|| mirrored(p))])
+            .flatten()
     };
     match (args.eye, args.distance, args.height) {
         (_, _, Some(height)) => Camera::orthographic(towards_viewer, target, up, height, page),
@@ -130,9 +279,51 @@ fn angles(args: &ViewArgs) -> (f64, f64) {
     (args.azimuth.unwrap_or(azimuth), args.elevation.unwrap_or(elevation))
 }
 
+fn elevation(text: &str) -> Result<f64, String> {
+    let degrees = number(text)?;
+    let seen = (-90.0..=90.0).contains(&degrees);
+    seen.then_some(degrees).ok_or("the angle must be within -90 and 90".to_owned())
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    /// Most pixels a side: a PNG of this size is 1 GiB in memory.
+    const MOST: u32 = 16_384;
+    let parts = text.split_once(['x', 'X', '×']).ok_or("WIDTHxHEIGHT is wanted, as 800x600")?;
+    let side = |text: &str| match text.trim().parse() {
+        Ok(pixels) if (1..=MOST).contains(&pixels) => Ok(pixels),
+        _ => Err(format!("'{text}' is no number of pixels from 1 to {MOST}")),
+    };
+    Ok([side(parts.0)?, side(parts.1)?])
+}
+
 #[cfg(test)]
 mod tests {
+    use clap::Parser as _;
+
     use super::*;
+
+    #[test]
+    fn a_turn_goes_round_the_up_axis_and_keeps_its_distance() {
+        let target = DVec3::new(1.0, 2.0, 3.0);
+        let turns = [0.0, 90.0, 180.0, 270.0];
+        let cube = drypoint_mesh::shapes::by_name("cube", 12).unwrap();
+        let mut command = crate::args::Cli::try_parse_from(["drypoint", "draw", "--view", "right"]);
+        let Ok(crate::args::Cli { command: crate::args::Command::Draw(args) }) = &mut command
+        else {
+            panic!("draw draws")
+        };
+        let eyes = |args: &ViewArgs| -> Vec<DVec3> {
+            let found = turntable(args, target, &turns, |_| Cow::Borrowed(&cube)).unwrap();
+            found.iter().map(|camera| camera.viewpoint().xyz() - target).collect()
+        };
+        let found = eyes(&args.view);
+        let far = found[0].x;
+        let expected = [DVec3::X, -DVec3::Z, -DVec3::X, DVec3::Z].map(|side| far * side);
+        assert!(far > 1.0 && found.iter().zip(expected).all(|(f, e)| f.distance(e) < 1e-9 * far));
+        args.view = ViewArgs { eye: Some(target + DVec3::X), view: None, ..args.view.clone() };
+        args.view.up = Some(DVec3::Z);
+        assert_eq!(eyes(&args.view), [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y]);
+    }
 
     #[test]
     fn up_axes_turn_the_frame_exactly() {
