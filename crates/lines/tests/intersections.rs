@@ -240,6 +240,27 @@ fn every_shape_crosses_every_other() {
     }
 }
 
+/// The same shapes at another scale cross in the same lines: to the bit if nothing is rounded.
+#[test]
+fn scale_changes_nothing() {
+    let mesh = together(&[shapes::torus_knot(2000), shapes::bumpy_sphere(1000)]);
+    let expected = lines(&mesh);
+    assert!(!expected.is_empty());
+    for scale in [2f64.powi(-100), 2f64.powi(-30), 2f64.powi(60), 2f64.powi(120)] {
+        let found = lines(&moved(&mesh, |p| scale * p));
+        let unscaled: Vec<_> = found
+            .into_iter()
+            .map(|(line, closed)| (line.into_iter().map(|p| p / scale).collect(), closed))
+            .collect();
+        assert_eq!(unscaled, expected, "{scale:e}");
+    }
+    for scale in [1e-38, 1e-36, 3e37] {
+        let found: f64 = lines(&moved(&mesh, |p| scale * p)).iter().map(|l| length(&l.0)).sum();
+        let expected: f64 = expected.iter().map(|line| scale * length(&line.0)).sum();
+        assert!((found / expected - 1.0).abs() < 1e-3, "{scale:e}: {found:e}, {expected:e}");
+    }
+}
+
 /// Where two triangles cross by the interval method (Möller, A Fast Triangle-Triangle Intersection
 /// Test, 1997), in f64; `None` where that cannot tell.
 fn naive(a: [DVec3; 3], b: [DVec3; 3]) -> Option<Option<[DVec3; 2]>> {
