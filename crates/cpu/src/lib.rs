@@ -9,6 +9,7 @@
 //! | [`Extractor::edges`], [`Extractor::vertex_pairs`] | patches, then the edges of those that may hold a contour edge, with the newest instructions | every frame: microseconds for a mesh of 100,000 edges |
 //! | [`Extractor::edges_of_batch`], [`Extractor::vertex_pairs_of_batch`] | the same from many viewpoints, tile by tile, on all threads | many views of a mesh that does not fit the second-level cache: from some 100,000 edges on |
 //! | [`Extractor::edges_on_threads`], [`Extractor::vertex_pairs_on_threads`] | the same from one viewpoint, on all threads | a frame of a mesh of several million edges |
+//! | [`RigExtractor::edges`] | patches of parts that keep their shape, and loose edges on posed vertices | a model that moves, or that places meshes many times |
 //! | [`Extractor::all_edges`] | every edge, with the same instructions | measuring what patches gain |
 //! | [`FaceStrips`], [`StoredPlanes`], [`FaceSigns`] | every edge, with the same instructions | a mesh that is seen from too few viewpoints to build patches for, but from many; measuring |
 //! | [`extract_patches`] | the same patches and edges, with exact predicates throughout, nothing laid out | a single view |
@@ -17,7 +18,8 @@
 //! | [`extract_naively`] | every edge, in f32: inexact | measuring |
 //!
 //! - Viewpoints are in the space of the mesh: for an instance that is moved, turned or sheared, carry the
-//!   viewpoint into it. Where vertices move against each other, patches are void: fuse again.
+//!   viewpoint into it ([`Viewpoint::carried_into`](drypoint_mesh::Viewpoint::carried_into)). Where vertices
+//!   move against each other, patches are void: that is what a [`RigExtractor`] is for.
 //! - An [`EdgeId`](drypoint_mesh::EdgeId) leads to its vertices by `adjacency.wing(id).ends()`. Vertex
 //!   pairs are these, lower number first; of several vertices at one position, the first. An edge of more
 //!   than two faces is found once for each of its wings.
@@ -81,6 +83,7 @@ mod faces;
 mod kernels;
 mod parts;
 mod patches;
+mod rigged;
 mod simd;
 mod statistics;
 mod strips;
@@ -92,5 +95,6 @@ pub use brute_force::{BruteForce, FaceSigns, FaceStrips, StoredPlanes, extract_n
 pub use contours::Contours;
 pub use extractor::Extractor;
 pub use patches::{extract_all_wings, extract_patches};
+pub use rigged::{RigContours, RigExtractor};
 pub use simd::Instructions;
 pub use statistics::Statistics;

@@ -24,6 +24,8 @@ pub struct FaceSides<'a> {
     /// The viewpoint as each part sees it.
     carried: Vec<Option<Viewpoint>>,
     mirrored: Vec<bool>,
+    /// Whether any carrier is.
+    mirrors: bool,
 }
 
 impl<'a> FaceSides<'a> {
@@ -35,7 +37,9 @@ impl<'a> FaceSides<'a> {
         let carry =
             |part: &super::RigidPart| viewpoint.carried_into(&pose.to_scene[part.carrier as usize]);
         let carried = skin.parts().iter().map(carry).collect();
-        Self { rig, skin, pose, viewpoint, carried, mirrored: rig.mirrored(pose) }
+        let mirrored = rig.mirrored(pose);
+        let mirrors = mirrored.contains(&true);
+        Self { rig, skin, pose, viewpoint, carried, mirrored, mirrors }
     }
 
     /// The viewpoint in the space of a part; `None` if that is flattened.
@@ -45,31 +49,33 @@ impl<'a> FaceSides<'a> {
 
     /// The side of a face that the viewpoint is on: `Greater` in front.
     pub fn side(&self, face: u32) -> Ordering {
-        self.side_with(face, |vertex| self.posed(vertex))
+        self.side_with(face, |corner| self.posed(self.rig.triangles[face as usize][corner]))
     }
 
-    /// The same, asking `position` where a vertex of a face that bends is: for callers who know.
-    pub fn side_with(&self, face: u32, position: impl Fn(u32) -> Vec3) -> Ordering {
+    /// The same, asking `position` where a corner, 0 .. 3, of a face that bends is: for callers who know.
+    pub fn side_with(&self, face: u32, position: impl Fn(usize) -> Vec3) -> Ordering {
         if let Some((part, local)) = self.skin.part_of_face(face)
             && let Some(viewpoint) = self.carried(part)
         {
             let shape = &self.skin.shapes()[self.skin.parts()[part as usize].shape as usize];
             return face_side(shape.mesh.corners(local), viewpoint);
         }
-        let side = face_side(self.rig.triangles[face as usize].map(position), self.viewpoint);
+        let side = face_side([0, 1, 2].map(position), self.viewpoint);
         if self.is_turned(face) { side.reverse() } else { side }
     }
 
-    /// Whether two faces that meet in `edge` are a contour, given the sides of all faces that are asked for.
-    pub fn is_contour(&self, edge: EdgeId, side: impl Fn(u32) -> Ordering) -> bool {
+    /// Whether an edge is a contour, given the sides of its left and its right face.
+    pub fn is_contour(&self, edge: EdgeId, [left, right]: [Ordering; 2]) -> bool {
         let adjacency = self.skin.adjacency();
-        let [left, right] = adjacency.sides(edge).map(|half_edge| half_edge.triangle());
         // Where the right face is wound the other way, or one of them is mirrored, the edge reads it turned
         // over.
-        let is_turned =
-            adjacency.is_right_turned(edge) ^ self.is_turned(left) ^ self.is_turned(right);
-        let right = if is_turned { side(right).reverse() } else { side(right) };
-        is_front(side(left)) != is_front(right)
+        let is_turned = adjacency.is_right_turned(edge)
+            ^ adjacency
+                .sides(edge)
+                .into_iter()
+                .fold(false, |turned, half_edge| turned ^ self.is_turned(half_edge.triangle()));
+        let right = if is_turned { right.reverse() } else { right };
+        is_front(left) != is_front(right)
     }
 
     /// Where a vertex is, as [`Rig::mesh`] has it.
@@ -79,8 +85,11 @@ impl<'a> FaceSides<'a> {
 
     /// Whether a carrier mirrors a face.
     fn is_turned(&self, face: u32) -> bool {
-        let [corner, ..] = self.rig.triangles[face as usize];
-        self.mirrored[self.rig.leading_carrier(corner) as usize]
+        // Most poses mirror nothing.
+        self.mirrors && {
+            let [corner, ..] = self.rig.triangles[face as usize];
+            self.mirrored[self.rig.leading_carrier(corner) as usize]
+        }
     }
 }
 
@@ -106,7 +115,10 @@ impl Skin {
         let count = u32::try_from(rig.triangles().len()).unwrap_or(u32::MAX);
         let sides: Vec<Ordering> = (0..count).map(|face| faces.side(face)).collect();
         contours.clear();
-        let is_contour = |&edge: &EdgeId| faces.is_contour(edge, |face| sides[face as usize]);
+        let is_contour = |&edge: &EdgeId| {
+            let of_edge = self.adjacency().sides(edge);
+            faces.is_contour(edge, of_edge.map(|half_edge| sides[half_edge.triangle() as usize]))
+        };
         contours.extend(self.edges(filter).filter(is_contour));
     }
 }
