@@ -73,10 +73,18 @@ Examples:
   drypoint draw bunny.patches --model bunny.obj --show survivors --view front -o bunny.png
   drypoint draw dragon.ply --method wgpu -o dragon.png
   drypoint draw dragon.ply --method ash -o dragon.png
+  drypoint draw robot.glb --animation Walking --time 0.5 -o robot.svg
+  drypoint draw robot.glb --animation Walking --frames walk --fps 24 --view left
+  drypoint draw part.stl --turntable 60 --frames turn --format png --elevation 20
+
+A model that can move is drawn at rest unless an animation poses it. All frames are drawn by one camera
+that holds what moves in all of them, or from one distance where it goes around the model. Beside the
+frames lies frames.json, by which the same command knows them again.
 
 With --json prints one object: for each class of lines chains, segments, visible_length and
 hidden_length in pixels; and with --show patches or survivors in `patches` the numbers of edges,
-patches, super_patches, survivors and edges_tested from this view.")]
+patches, super_patches, survivors and edges_tested from this view. With --frames: frames, drawn, kept
+(they were there) and blank (of those drawn).")]
 pub(crate) struct DrawArgs {
     /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file with --model
     #[arg(default_value = "shape:torus-knot:20000")]
@@ -174,7 +182,10 @@ Examples:
 With --json prints one object: edges, patches, super_patches, always_tested (edges in no patch),
 mean_half_angle and max_half_angle in degrees, mean_t in the file's unit, expected_cost in edge
 tests a view, build_seconds, peak_memory in bytes or null, and what was asked for: preset, profile,
-bound, levels, runtime.")]
+bound, levels, runtime.
+
+Patches of a model that can move are those of its rest pose; `drypoint extract --animation` builds some
+for each of its rigid parts.")]
 pub(crate) struct PatchesArgs {
     /// Mesh file, or `shape:NAME[:TRIANGLES]`
     pub(crate) model: PathBuf,
@@ -198,13 +209,16 @@ Examples:
   drypoint extract bunny.obj --eye 0,0.1,2
   drypoint extract bunny.obj --direction 0,0,1 --edges all --json
   drypoint extract bunny.patches --eye 0,0.1,2 --json
+  drypoint extract robot.glb --animation Walking --time 0.5 --eye 3,2,9 --method patches
 
 Prints a pair of vertices a line, lower index first, sorted; what was tested goes to standard error.
 With --json prints one object: method, edges, patches, patches_tested, patches_accepted,
 super_patches, super_patches_tested, super_patches_accepted, edges_tested, contour_edges, contour.
 Vertices are counted from 0 in the file's own order (OBJ: v
 lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices
-at one position the first is named.")]
+at one position the first is named. In a pose of an animation vertices are one if they always are: then
+a pair may stand for two edges that part when the model moves, and edges and patches are those of all its
+rigid parts, with the edges between them.")]
 pub(crate) struct ExtractArgs {
     /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file
     pub(crate) model: PathBuf,
@@ -231,6 +245,10 @@ pub(crate) struct ExtractArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Of a glTF file with skins, animations, morph targets, or meshes that are placed more than once, it also
+tells animations, instances, rigid_parts, rigid_shapes, and rigid_share: how much of the edges lies
+between faces that move as one, and so can be grouped into patches.")]
 pub(crate) struct InfoArgs {
     /// Mesh file, or `shape:NAME[:TRIANGLES]`
     pub(crate) model: PathBuf,

@@ -43,6 +43,7 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     }
     // What cannot be done is told before the mesh is read.
     args.method.and_then(Method::api).map_or(Ok(()), Api::check_feature)?;
+    rigged::check(args)?;
     let found =
         if has_patches { from_patch_file(args, viewpoint)? } else { from_mesh(args, viewpoint)? };
     if args.json {

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use drypoint_cpu::{Statistics, extract_patches};
+use drypoint_cpu::{RigContours, RigExtractor, Statistics};
 use drypoint_fusion::{PatchSet, Progress, fuse_shapes};
-use drypoint_mesh::rig::{FaceSides, Pose, Rig, Skin};
+use drypoint_mesh::rig::{Pose, Rig, Skin};
 use drypoint_mesh::{EdgeFilter, EdgeId, Viewpoint};
 
 use crate::args::{ExtractArgs, Method};
@@ -19,6 +19,22 @@ struct Posed<'a> {
     skin: Skin,
     pose: Pose,
     filter: EdgeFilter,
+}
+
+/// Refuses what poses no models, before one is read.
+pub(crate) fn check(args: &ExtractArgs) -> Result<(), String> {
+    let is_posed = args.animation.animation.is_some();
+    match args.method.filter(|method| is_posed && method.api().is_some()) {
+        Some(method) => Err(refusal(method)),
+        None => Ok(()),
+    }
+}
+
+fn refusal(method: Method) -> String {
+    format!(
+        "--method {}: finds no contour edges of --animation",
+        method.api().map_or("", Api::name)
+    )
 }
 
 /// Finds the contour edges in the pose that `args` ask for. Ends are the vertices of the file's mesh.
@@ -46,12 +62,13 @@ pub(crate) fn extract(
         }
         Some(Method::Patches) => {
             sets = posed.fuse(args).map_err(|error| format!("{}: {error}", source.name))?;
-            ("patches", posed.patches(&sets, viewpoint, &mut contours))
+            let extractor = RigExtractor::new(rig, &posed.skin, &sets);
+            let mut found = RigContours::default();
+            let statistics = extractor.edges(&posed.pose, viewpoint, &mut found);
+            contours.extend(found.edges());
+            ("patches", statistics)
         }
-        Some(method @ (Method::Wgpu | Method::Ash)) => {
-            let name = method.api().map_or("", Api::name);
-            return Err(format!("--method {name}: finds no contour edges of --animation"));
-        }
+        Some(method @ (Method::Wgpu | Method::Ash)) => return Err(refusal(method)),
     };
     let in_file = |vertex: u32| source.model.rig_vertices[vertex as usize];
     let ends = |&edge: &EdgeId| {
@@ -90,34 +107,5 @@ impl Posed<'_> {
             ControlFlow::Continue(())
         };
         fuse_shapes(&self.skin, self.filter, &params, &progress).map_err(|error| error.to_string())
-    }
-
-    /// Tests the patches of each part from where it sees the viewpoint, and every loose edge.
-    fn patches(
-        &self,
-        sets: &[PatchSet],
-        viewpoint: Viewpoint,
-        contours: &mut Vec<EdgeId>,
-    ) -> Statistics {
-        let skin = &self.skin;
-        let faces = FaceSides::new(self.rig, skin, &self.pose, viewpoint);
-        let mut statistics = Statistics::default();
-        let mut tested_alone = skin.loose().to_vec();
-        let mut of_part = Vec::new();
-        for (index, part) in (0..).zip(skin.parts()) {
-            if let Some(viewpoint) = faces.carried(index) {
-                let set = &sets[part.shape as usize];
-                statistics += extract_patches(set, viewpoint, &mut of_part);
-                contours.extend(of_part.iter().map(|&edge| part.edge_in_rig(edge)));
-            } else {
-                let shape = &skin.shapes()[part.shape as usize];
-                tested_alone.extend(shape.edges(self.filter).map(|edge| part.edge_in_rig(edge)));
-            }
-        }
-        statistics.edges_tested += tested_alone.len();
-        let is_contour = |&edge: &EdgeId| faces.is_contour(edge, |face| faces.side(face));
-        contours.extend(tested_alone.into_iter().filter(is_contour));
-        statistics.contour_edges = contours.len();
-        statistics
     }
 }
