@@ -13,7 +13,7 @@ fn brute_force(
     }
     begin_appending(lane);
     let instance = work.first_instance + number / blocks;
-    let placement = instance * work.part_count + work.part;
+    let placement = placement_of(instance, work.part);
     let viewpoint = viewpoints[placement];
     let first = (number % blocks) * work.items_per_workgroup;
     let end = min(first + work.items_per_workgroup, work.item_count);

@@ -4,6 +4,7 @@
 struct Part {
     part: u32,
     part_count: u32,
+    first_placement: u32,
 }
 
 @group(0) @binding(0) var<uniform> scene_to_clip: mat4x4f;
@@ -15,6 +16,6 @@ fn place_vertex(
     @location(0) position: vec3f,
     @builtin(instance_index) instance: u32,
 ) -> @builtin(position) vec4f {
-    let transform = transforms[instance * part.part_count + part.part];
+    let transform = transforms[part.first_placement + instance * part.part_count + part.part];
     return scene_to_clip * vec4f(transformed(transform, position), 1.0);
 }

@@ -55,7 +55,7 @@ fn find_patches(place: u32, end: u32, instance: u32, lane: Lane) {
     if place < end {
         let group = super_patches[work.first_item + place];
         atomicAdd(&super_patches_tested, group.weight);
-        if may_hold_contour(group.bound, viewpoints[instance * work.part_count + group.part]) {
+        if may_hold_contour(group.bound, viewpoints[placement_of(instance, group.part)]) {
             first_patch = group.first;
             count = group.count;
             atomicAdd(&super_patches_accepted, group.weight);

@@ -12,7 +12,7 @@ fn all_edges(
         let item = number * EDGES_PER_WORKGROUP + first + lane.index;
         let edge = work.first_item + item % work.item_count;
         let instance = work.first_instance + item / work.item_count;
-        let placement = instance * work.part_count + work.part;
+        let placement = placement_of(instance, work.part);
         var is_hit = false;
         if item < work.item_count * work.instance_count {
             is_hit = is_contour(planes[edge], viewpoints[placement]);

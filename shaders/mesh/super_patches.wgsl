@@ -59,7 +59,7 @@ fn cull_super_patches(
 fn test_super_patch(index: u32, instance: u32) {
     let group = super_patches[index];
     atomicAdd(&super_patches_tested, group.weight);
-    if may_hold_contour(group.bound, viewpoints[instance * work.part_count + group.part]) {
+    if may_hold_contour(group.bound, viewpoints[placement_of(instance, group.part)]) {
         let before = atomicAdd(&groups_taken, 256u * group.count + 1u);
         patch_ends[before % 256u] = before / 256u + group.count;
         patch_offsets[before % 256u] = group.first - before / 256u;

@@ -31,7 +31,7 @@ fn begin_patches(lane: Lane) {
 
 fn test_patch(index: u32, instance: u32) -> Survivor {
     let group = patches[index];
-    let placement = instance * work.part_count + group.part;
+    let placement = placement_of(instance, group.part);
     atomicAdd(&patches_tested, group.weight);
     if !may_hold_contour(group.bound, viewpoints[placement]) {
         return Survivor(0u, 0u, 0u);

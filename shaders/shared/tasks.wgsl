@@ -42,7 +42,7 @@ fn test_patch(is_patch: bool, index: u32, instance: u32, lane: Lane) {
     var placement = 0u;
     if is_patch {
         let group = patches[index];
-        placement = instance * work.part_count + group.part;
+        placement = placement_of(instance, group.part);
         first = group.first;
         atomicAdd(&patches_tested, group.weight);
         if may_hold_contour(group.bound, viewpoints[placement]) {

@@ -14,6 +14,14 @@ struct Work {
     part: u32,
     // Segments that fit the output.
     segment_capacity: u32,
+    // Where the placements of these parts begin.
+    first_placement: u32,
+    // Instances that a frame has room for.
+    most_instances: u32,
 }
 
 @group(1) @binding(0) var<uniform> work: Work;
+
+fn placement_of(instance: u32, part: u32) -> u32 {
+    return work.first_placement + instance * work.part_count + part;
+}

@@ -73,13 +73,22 @@ pub struct Chunk {
 impl Content {
     /// Of one rigid part for each patch set. Linear; exact predicates and a normal for each edge.
     pub fn new(parts: &[&PatchSet]) -> Self {
+        Self::in_frames(parts, |set| frame_of(set.positions(), set.wings().iter()))
+    }
+
+    /// The same in frames that hold all faces of each shape, those too that lie beside none of its edges.
+    pub(crate) fn of_shapes(shapes: &[&PatchSet]) -> Self {
+        Self::in_frames(shapes, |set| Frame::new(set.positions().iter().copied()))
+    }
+
+    fn in_frames(parts: &[&PatchSet], frame: impl Fn(&PatchSet) -> Frame) -> Self {
         let mut content = Self::default();
         let has_levels = parts.iter().any(|set| !set.super_patches().is_empty());
         for (part, &set) in (0..).zip(parts) {
             let first_edge = content.edge_count();
             let named = set.wings().iter().zip(set.edge_ids()).zip(set.classes());
             let edges = named.map(|((wing, &id), &class)| ContentEdge { wing, id, class });
-            content.add_edges(set.positions(), edges);
+            content.add_edges(set.positions(), frame(set), edges);
             content.add_patches(part, first_edge, set, has_levels);
         }
         content
@@ -92,7 +101,9 @@ impl Content {
     pub fn without_patches(mesh: &Mesh, adjacency: &MeshAdjacency, filter: EdgeFilter) -> Self {
         let mut content = Self::default();
         let edges = adjacency.edges(filter).map(|edge| ContentEdge::new(adjacency, edge));
-        content.add_edges(mesh.positions(), edges.collect::<Vec<_>>().into_iter());
+        let edges: Vec<_> = edges.collect();
+        let frame = frame_of(mesh.positions(), edges.iter().map(|edge| edge.wing));
+        content.add_edges(mesh.positions(), frame, edges.into_iter());
         content
     }
 
@@ -108,8 +119,8 @@ impl Content {
         groups: impl IntoIterator<Item = (DoubleCone, u32)>,
     ) -> Self {
         let mut content = Self::default();
-        content.add_edges(positions, edges);
-        let frame = content.frames[0];
+        let frame = frame_of(positions, edges.clone().map(|edge| edge.wing));
+        content.add_edges(positions, frame, edges);
         let (mut first, all) = (0, content.edge_count());
         for (bound, edge_count) in groups {
             assert!(edge_count <= all - first, "groups have more edges than there are");
@@ -166,11 +177,9 @@ impl Content {
     fn add_edges<'a>(
         &mut self,
         positions: &[Vec3],
-        edges: impl Iterator<Item = ContentEdge<'a>> + Clone,
+        frame: Frame,
+        edges: impl Iterator<Item = ContentEdge<'a>>,
     ) {
-        let vertices = edges.clone().map(|edge| edge.wing);
-        let vertices = vertices.flat_map(|w| [w.tail, w.head, w.left, w.right]);
-        let frame = Frame::new(vertices.map(|vertex| positions[vertex as usize]));
         let first_vertex = count(self.positions.len());
         let first_edge = self.edge_count();
         for ContentEdge { wing, id: edge, class } in edges {
@@ -262,6 +271,12 @@ impl Content {
             edges,
         }
     }
+}
+
+/// Around the faces of edges.
+fn frame_of<'a>(positions: &[Vec3], wings: impl Iterator<Item = &'a Wing>) -> Frame {
+    let vertices = wings.flat_map(|w| [w.tail, w.head, w.left, w.right]);
+    Frame::new(vertices.map(|vertex| positions[vertex as usize]))
 }
 
 impl Chunk {

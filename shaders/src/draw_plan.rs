@@ -119,6 +119,8 @@ impl DrawPlan<'_> {
                     part_count: self.part_count,
                     part,
                     segment_capacity: self.segment_capacity,
+                    first_placement: 0,
+                    most_instances: self.instances,
                 };
                 visit(Draw { culling, chunk, work, grid });
             }

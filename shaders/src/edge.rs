@@ -77,23 +77,31 @@ impl EdgePlanes {
     /// may find the edge where the exact definition does not, or the reverse. `viewpoint` is what
     /// [`Frame::viewpoint`] gives.
     pub fn is_doubtful(planes: &[DVec4; 2], viewpoint: Vec4) -> bool {
-        let (doubt, viewpoint) = (Self::doubt(viewpoint), viewpoint.as_dvec4());
-        // From faces without area, all is certain; from NaN, nothing.
-        let is_sure = |plane: &DVec4| *plane == DVec4::ZERO || plane.dot(viewpoint).abs() > doubt;
-        !planes.iter().all(is_sure)
+        !planes.iter().all(|&plane| is_side_sure(plane, viewpoint))
     }
+}
+
+/// Whether f32 knows on which side of a plane `viewpoint` is: of faces without area, for certain; of NaN,
+/// never.
+pub(crate) fn is_side_sure(plane: DVec4, viewpoint: Vec4) -> bool {
+    plane == DVec4::ZERO || plane.dot(viewpoint.as_dvec4()).abs() > EdgePlanes::doubt(viewpoint)
 }
 
 /// Twin of `is_front_facing` in shared/contour.wgsl.
 fn is_front_facing(plane: Vec4, viewpoint: Vec4) -> bool {
+    height(plane, viewpoint) >= 0.0
+}
+
+/// How far the viewpoint is above a plane, as `is_front_facing` has it.
+pub(crate) fn height(plane: Vec4, viewpoint: Vec4) -> f32 {
     let [x, y, z, w] = plane.to_array();
     let along_z = z.mul_add(viewpoint.z, w * viewpoint.w);
-    x.mul_add(viewpoint.x, y.mul_add(viewpoint.y, along_z)) >= 0.0
+    x.mul_add(viewpoint.x, y.mul_add(viewpoint.y, along_z))
 }
 
 /// The plane of `face`, in the frame: from its corners in the order of their indices, so that it does not
 /// depend on the edge that asks. Zero if they are collinear.
-fn plane(positions: &[Vec3], face: [u32; 3], frame: &Frame) -> DVec4 {
+pub(crate) fn plane(positions: &[Vec3], face: [u32; 3], frame: &Frame) -> DVec4 {
     let mut sorted = face;
     sorted.sort_unstable();
     let is_turned = (0..3).all(|turn| [0, 1, 2].map(|i| face[(i + turn) % 3]) != sorted);
@@ -114,7 +122,7 @@ fn plane(positions: &[Vec3], face: [u32; 3], frame: &Frame) -> DVec4 {
 }
 
 /// Whether rounding the differences of corners turns the normal of `face` by less than 2⁻³⁴ radians.
-fn is_normal_sure(positions: &[Vec3], mut face: [u32; 3]) -> bool {
+pub(crate) fn is_normal_sure(positions: &[Vec3], mut face: [u32; 3]) -> bool {
     face.sort_unstable();
     let [a, b, c] = face.map(|vertex| positions[vertex as usize].as_dvec3());
     let [(u, lost_of_u), (v, lost_of_v)] = [b, c].map(|corner| {

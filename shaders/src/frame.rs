@@ -26,6 +26,11 @@ impl Frame {
             low = low.min(position.as_dvec3());
             high = high.max(position.as_dvec3());
         }
+        Self::of_box(low, high)
+    }
+
+    /// Around a box, in model units. Around the origin, and not scaled, if it holds nothing.
+    pub(crate) fn of_box(low: DVec3, high: DVec3) -> Self {
         if !low.is_finite() {
             return Self { center: DVec3::ZERO, scale: 1.0 };
         }
@@ -42,12 +47,13 @@ impl Frame {
     /// A viewpoint as shaders take it: homogeneous, with w above 0 for a point and 0 for a direction,
     /// and no coordinate above 1. Rounded, by 2⁻²⁴ of each coordinate in the frame.
     pub fn viewpoint(&self, viewpoint: Viewpoint) -> Vec4 {
-        // Homogeneous, so that the scale need not be multiplied: that may be too much for f64.
-        let (xyz, w) = if viewpoint.is_point() {
-            (viewpoint.xyz() - self.center, 1.0 / self.scale)
-        } else {
-            (viewpoint.xyz(), 0.0)
-        };
+        self.homogeneous(viewpoint.xyz(), viewpoint.w())
+    }
+
+    /// The same of a viewpoint with any w from 0 on.
+    pub(crate) fn homogeneous(&self, xyz: DVec3, w: f64) -> Vec4 {
+        // So the scale need not be multiplied: that may be too much for f64.
+        let (xyz, w) = (xyz - w * self.center, w / self.scale);
         // Of points that are near, w is 1. A power of two rounds nothing.
         let size = xyz.abs().max_element().max(w);
         let scale = if size > 0.0 { 1.0 / power_of_two_above(size) } else { 1.0 };

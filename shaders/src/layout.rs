@@ -28,7 +28,7 @@ pub struct Group {
 }
 
 /// What one dispatch has to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Work {
     /// First edge for brute force, first patch or super-patch otherwise.
@@ -41,12 +41,16 @@ pub struct Work {
     pub first_instance: u32,
     /// Number of instances.
     pub instance_count: u32,
-    /// Parts of an instance: part p of instance i is placement `i * part_count + p`.
+    /// Parts of an instance: part p of instance i is placement `first_placement + i * part_count + p`.
     pub part_count: u32,
     /// The part that the edges belong to; for brute force.
     pub part: u32,
     /// Segments that fit the output.
     pub segment_capacity: u32,
+    /// Where the placements of these parts begin: 0, but for those of a rig.
+    pub first_placement: u32,
+    /// Instances that a frame has room for.
+    pub most_instances: u32,
 }
 
 /// What is counted during one dispatch.
@@ -193,8 +197,10 @@ impl From<DAffine3> for Transform {
 pub struct Part {
     /// Its index in the model.
     pub part: u32,
-    /// Parts of an instance: part p of instance i is placement `i * part_count + p`.
+    /// Parts of an instance: part p of instance i is placement `first_placement + i * part_count + p`.
     pub part_count: u32,
+    /// Where the placements of these parts begin: 0, but for those of a rig.
+    pub first_placement: u32,
 }
 
 /// How segments are drawn.

@@ -36,6 +36,7 @@ mod layout;
 mod mesh_sources;
 mod placement;
 mod plan;
+mod rig;
 mod sources;
 mod statistics;
 mod style;
@@ -52,10 +53,15 @@ pub use layout::{
 pub use mesh_sources::{BLOCK_PATCHES, Culling, Emitted, MeshShape, mesh_source};
 pub use placement::{Placement, place};
 pub use plan::{Dispatch, Method, Plan, PlanLimits, Stage};
+pub use rig::{
+    BendingFace, CarrierTransform, ClassLayout, LooseEdge, MorphOffset, PartFace, PoseError,
+    RigContent, RigCounts, RigDispatch, RigInput, RigInstance, RigLayout, RigPlan, RigStep,
+    VertexInfluence,
+};
 pub use sources::{
-    BRUTE_FORCE, CONTOUR, DEPTH, INK, LINES, PATCHES, POSITIONS, SUPER_PATCHES, Subgroups, TALLY,
-    THIN_LINES, WIDTHS, prelude,
+    BRUTE_FORCE, CONTOUR, DEPTH, INK, LINES, PATCHES, POSITIONS, RIG_EDGES, RIG_FACES,
+    RIG_VERTICES, SUPER_PATCHES, Subgroups, TALLY, THIN_LINES, WIDTHS, prelude,
 };
 pub use statistics::Statistics;
 pub use style::{DepthOrder, LineStyle, View, divide_by_alpha};
-pub use triangles::Triangles;
+pub use triangles::{TrianglePart, Triangles};

@@ -22,18 +22,10 @@ impl Placement {
     }
 
     /// The viewpoint in the part's own space: which faces are seen from the front is the same there, up to
-    /// a mirror that turns all of them over. `None` if the part is flattened.
+    /// a mirror that turns all of them over. `None` if the part is flattened, or as small or as large as
+    /// [`Viewpoint::carried_into`] says.
     pub fn viewpoint_of_part(&self) -> Option<Viewpoint> {
-        let from_scene = self.to_scene.inverse();
-        let xyz = self.viewpoint.xyz();
-        let (xyz, viewpoint) = if self.viewpoint.is_point() {
-            let xyz = from_scene.transform_point3(xyz);
-            (xyz, Viewpoint::at(xyz))
-        } else {
-            let xyz = from_scene.transform_vector3(xyz);
-            (xyz, Viewpoint::from_direction(xyz))
-        };
-        xyz.is_finite().then_some(viewpoint)
+        self.viewpoint.carried_into(&self.to_scene)
     }
 
     /// The same as a shader takes it, in the `frame` of the part.

@@ -50,7 +50,7 @@ pub struct PlanLimits {
 }
 
 /// Rounds of a workgroup's lanes in brute force: enough that starting it costs little.
-const ROUNDS: u32 = 8;
+pub(crate) const ROUNDS: u32 = 8;
 
 /// Workgroups that a GPU should have before a workgroup gets more to do.
 const BUSY: u64 = 1024;
@@ -110,34 +110,19 @@ impl Plan<'_> {
         visit: &mut impl FnMut(Dispatch),
     ) {
         let share = self.share(stage, count);
-        // Workgroups are numbered in 32 bits.
-        let most_workgroups = (u64::from(self.limits.row).pow(2)).min(u64::from(u32::MAX / 2));
-        let most_items = small(most_workgroups * u64::from(share));
         let edges = &self.chunks[chunk].edges;
-        let most_instances = self.limits.edges / (edges.end - edges.start).max(1);
-        for first_item in (first..first + count).step_by(most_items as usize) {
-            let item_count = most_items.min(first + count - first_item);
-            let blocks = item_count.div_ceil(share);
-            let step = small(most_workgroups / u64::from(blocks)).min(most_instances).max(1);
-            for first_instance in (0..self.instances).step_by(step as usize) {
-                let instance_count = step.min(self.instances - first_instance);
-                let workgroups = blocks * instance_count;
-                // No more rows than needed, and as even as can be.
-                let rows = workgroups.div_ceil(self.limits.row);
-                let work = Work {
-                    first_item,
-                    item_count,
-                    items_per_workgroup: share,
-                    first_instance,
-                    instance_count,
-                    part_count: self.part_count,
-                    part,
-                    segment_capacity: self.segment_capacity,
-                };
-                let grid = [workgroups.div_ceil(rows), rows];
-                visit(Dispatch { stage, chunk, work, grid });
-            }
-        }
+        let tiles = Tiles {
+            limits: self.limits,
+            items: [first, count],
+            share,
+            instances: self.instances,
+            most_instances: self.limits.edges / (edges.end - edges.start).max(1),
+        };
+        let (part_count, segment_capacity) = (self.part_count, self.segment_capacity);
+        tiles.cut(&mut |work, grid| {
+            let work = Work { part_count, part, segment_capacity, ..work };
+            visit(Dispatch { stage, chunk, work, grid });
+        });
     }
 
     /// Items for a workgroup: as many as it has room for, fewer where too few workgroups would be busy.
@@ -155,6 +140,51 @@ impl Plan<'_> {
             share /= 2;
         }
         share
+    }
+}
+
+/// Items of instances, to be cut.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tiles {
+    pub(crate) limits: PlanLimits,
+    /// The first item, and their number.
+    pub(crate) items: [u32; 2],
+    /// Items for a workgroup.
+    pub(crate) share: u32,
+    pub(crate) instances: u32,
+    /// Most of these in a dispatch.
+    pub(crate) most_instances: u32,
+}
+
+impl Tiles {
+    /// Hands to `visit` what dispatches have to do, but for parts and segments, and their workgroups along x
+    /// and y.
+    pub(crate) fn cut(&self, visit: &mut impl FnMut(Work, [u32; 2])) {
+        let Self { limits, items: [first, count], share, instances, most_instances } = *self;
+        // Workgroups are numbered in 32 bits.
+        let most_workgroups = (u64::from(limits.row).pow(2)).min(u64::from(u32::MAX / 2));
+        let most_items = small(most_workgroups * u64::from(share));
+        for first_item in (first..first + count).step_by(most_items as usize) {
+            let item_count = most_items.min(first + count - first_item);
+            let blocks = item_count.div_ceil(share);
+            let step = small(most_workgroups / u64::from(blocks)).min(most_instances).max(1);
+            for first_instance in (0..instances).step_by(step as usize) {
+                let instance_count = step.min(instances - first_instance);
+                let workgroups = blocks * instance_count;
+                // No more rows than needed, and as even as can be.
+                let rows = workgroups.div_ceil(limits.row);
+                let work = Work {
+                    first_item,
+                    item_count,
+                    items_per_workgroup: share,
+                    first_instance,
+                    instance_count,
+                    most_instances: instances,
+                    ..Work::default()
+                };
+                visit(work, [workgroups.div_ceil(rows), rows]);
+            }
+        }
     }
 }
 

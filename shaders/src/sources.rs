@@ -57,6 +57,41 @@ pub const TALLY: &str = concat!(
     include_str!("../tally.wgsl"),
 );
 
+/// Entry point `pose_vertices`, after the line of [`prelude`], as the two that follow.
+pub const RIG_VERTICES: &str = concat!(
+    include_str!("../shared/work.wgsl"),
+    include_str!("../shared/rig.wgsl"),
+    include_str!("../rig/vertices.wgsl"),
+);
+
+/// Entry point `find_sides`.
+pub const RIG_FACES: &str = concat!(
+    include_str!("../shared/contour.wgsl"),
+    include_str!("../shared/work.wgsl"),
+    include_str!("../shared/rig.wgsl"),
+    include_str!("../rig/faces.wgsl"),
+);
+
+/// Entry point `test_loose_edges`.
+pub const RIG_EDGES: [&str; 2] = [
+    concat!(
+        include_str!("../shared/segment.wgsl"),
+        include_str!("../shared/work.wgsl"),
+        include_str!("../shared/counters.wgsl"),
+        include_str!("../shared/rig.wgsl"),
+        include_str!("../shared/append_workgroup.wgsl"),
+        include_str!("../rig/edges.wgsl"),
+    ),
+    concat!(
+        include_str!("../shared/segment.wgsl"),
+        include_str!("../shared/work.wgsl"),
+        include_str!("../shared/counters.wgsl"),
+        include_str!("../shared/rig.wgsl"),
+        include_str!("../shared/append_subgroup.wgsl"),
+        include_str!("../rig/edges.wgsl"),
+    ),
+];
+
 /// Entry point `place_segments`.
 pub const POSITIONS: &str =
     concat!(include_str!("../shared/segment.wgsl"), include_str!("../positions.wgsl"));
@@ -90,7 +125,7 @@ pub const INK: &str = concat!(include_str!("../shared/stroke.wgsl"), include_str
 /// usual subgroup.
 pub const WIDTHS: [u32; 4] = [32, 64, 128, 256];
 
-/// What goes before [`BRUTE_FORCE`], [`PATCHES`] and [`SUPER_PATCHES`]: lanes in a workgroup, one of
+/// What goes before [`BRUTE_FORCE`], [`PATCHES`], [`SUPER_PATCHES`] and those of rigs: lanes in a workgroup, one of
 /// [`WIDTHS`].
 pub fn prelude(width: u32) -> String {
     format!("const WIDTH: u32 = {width}u;\n")

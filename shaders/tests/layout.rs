@@ -4,10 +4,11 @@ use std::mem::offset_of;
 
 use drypoint_bounds::{DoubleCone, MIN_CLEARANCE};
 use drypoint_shaders::{
-    Arguments, BRUTE_FORCE, CONTOUR, Counters, Culling, DEPTH, DrawCounters, EdgeEnds, EdgePlanes,
-    Emitted, Group, INK, LINES, MeshShape, PATCHES, POSITIONS, Part, PlacedSegment, ROW, Raster,
-    SEGMENTS_PER_WORKGROUP, SUPER_PATCHES, Segment, Stroke, TALLY, THIN_LINES, Totals, Transform,
-    WIDTHS, Work, mesh_source, prelude,
+    Arguments, BRUTE_FORCE, BendingFace, CONTOUR, CarrierTransform, Counters, Culling, DEPTH,
+    DrawCounters, EdgeEnds, EdgePlanes, Emitted, Group, INK, LINES, LooseEdge, MeshShape,
+    MorphOffset, PATCHES, POSITIONS, Part, PartFace, PlacedSegment, RIG_EDGES, RIG_FACES,
+    RIG_VERTICES, ROW, Raster, RigCounts, SEGMENTS_PER_WORKGROUP, SUPER_PATCHES, Segment, Stroke,
+    TALLY, THIN_LINES, Totals, Transform, VertexInfluence, WIDTHS, Work, mesh_source, prelude,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -31,7 +32,8 @@ fn validate(source: &str, capabilities: Capabilities) -> naga::Module {
 fn plain() -> Vec<String> {
     let widths = WIDTHS.into_iter();
     let extraction = widths.flat_map(|width| {
-        [BRUTE_FORCE[0], PATCHES[0], SUPER_PATCHES[0]].map(|source| prelude(width) + source)
+        [BRUTE_FORCE[0], PATCHES[0], SUPER_PATCHES[0], RIG_VERTICES, RIG_FACES, RIG_EDGES[0]]
+            .map(|source| prelude(width) + source)
     });
     extraction
         .chain([CONTOUR, TALLY, POSITIONS, DEPTH, LINES, THIN_LINES, INK].map(str::to_owned))
@@ -47,7 +49,7 @@ fn sources_are_valid_without_optional_features() {
 
 #[test]
 fn subgroup_variants_need_nothing_but_subgroups() {
-    for source in [BRUTE_FORCE[1], PATCHES[1], SUPER_PATCHES[1]] {
+    for source in [BRUTE_FORCE[1], PATCHES[1], SUPER_PATCHES[1], RIG_EDGES[1]] {
         validate(&(prelude(64) + source), Capabilities::SUBGROUP);
     }
 }
@@ -138,6 +140,8 @@ fn structs_have_the_same_layout_on_both_sides() {
             part_count,
             part,
             segment_capacity,
+            first_placement,
+            most_instances,
         }
     );
     check!(
@@ -166,7 +170,7 @@ fn structs_have_the_same_layout_on_both_sides() {
     check!(TALLY, Arguments { line_list, quads, workgroups });
     check!(POSITIONS, PlacedSegment { from_position, placement, to_position, edge });
     check!(POSITIONS, Transform { x, y, z });
-    check!(DEPTH, Part { part, part_count });
+    check!(DEPTH, Part { part, part_count, first_placement });
     check!(LINES, Raster { size, depth_sign, depth_step });
 }
 
@@ -189,7 +193,35 @@ fn counters_of_draws_have_the_same_layout_on_both_sides() {
     );
 }
 
-/// A uniform ends with padding, which WGSL does not name.
+#[test]
+fn structs_of_rigs_have_the_same_layout_on_both_sides() {
+    let [vertices, faces, edges] =
+        [RIG_VERTICES, RIG_FACES, RIG_EDGES[0]].map(|source| prelude(64) + source);
+    check!(
+        &vertices,
+        VertexInfluence { position, weight, carrier, first_offset, offset_end, is_last }
+    );
+    check!(&vertices, MorphOffset { by, morph });
+    check!(&faces, BendingFace { corners, carrier });
+    check!(&faces, PartFace { plane, placements_before, class_placements, place, carrier });
+    check!(
+        &edges,
+        LooseEdge { left_face, right_face, from_vertex, to_vertex, edge, is_right_turned }
+    );
+    check!(
+        &edges,
+        RigCounts {
+            first_vertex,
+            vertex_count,
+            bending_count,
+            face_count,
+            carrier_count,
+            morph_count,
+        }
+    );
+}
+
+/// WGSL names no padding at the end of a struct.
 #[test]
 fn a_stroke_has_the_same_layout_but_for_its_padding() {
     let (members, size) = layout(LINES, "Stroke");
@@ -200,6 +232,19 @@ fn a_stroke_has_the_same_layout_but_for_its_padding() {
     ];
     assert_eq!(members, expected);
     assert_eq!(size, size_of::<Stroke>());
+}
+
+#[test]
+fn a_carrier_has_the_same_layout_but_for_its_padding() {
+    let (members, size) = layout(&(prelude(64) + RIG_VERTICES), "CarrierTransform");
+    let expected = [
+        ("x".to_owned(), offset_of!(CarrierTransform, x)),
+        ("y".to_owned(), offset_of!(CarrierTransform, y)),
+        ("z".to_owned(), offset_of!(CarrierTransform, z)),
+        ("is_mirrored".to_owned(), offset_of!(CarrierTransform, is_mirrored)),
+    ];
+    assert_eq!(members, expected);
+    assert_eq!(size, size_of::<CarrierTransform>());
 }
 
 #[test]
@@ -238,7 +283,9 @@ fn constants_are_the_same_on_both_sides() {
 fn no_struct_is_written_twice() {
     let mut seen = std::collections::BTreeMap::new();
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    for folder in [folder.to_owned(), folder.join("shared"), folder.join("mesh")] {
+    for folder in
+        [folder.to_owned(), folder.join("shared"), folder.join("mesh"), folder.join("rig")]
+    {
         for entry in std::fs::read_dir(folder).expect("it can be listed") {
             let path = entry.expect("it can be listed").path();
             if path.extension().is_none_or(|extension| extension != "wgsl") {

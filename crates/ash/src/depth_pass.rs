@@ -1,11 +1,9 @@
 //! Depths of the surfaces that hide lines.
 
-use std::ops::Range;
-
 use ash::vk;
 use ash::vk::BufferUsageFlags as Usage;
 use drypoint_mesh::Mesh;
-use drypoint_shaders::{DEPTH, DepthOrder, Part, Triangles};
+use drypoint_shaders::{DEPTH, DepthOrder, Part, TrianglePart, Triangles};
 use glam::Mat4;
 
 use crate::barrier::Use;
@@ -41,7 +39,7 @@ pub struct Surface {
     indices: Buffer,
     set: Set,
     /// Where each part's uniform lies, and its indices.
-    parts: Vec<(u32, Range<u32>)>,
+    parts: Vec<TrianglePart>,
 }
 
 impl DepthPass {
@@ -89,8 +87,8 @@ impl DepthPass {
             return Err(Error::OtherContours);
         }
         let instances = found.input().count() / surface.model.part_count();
-        for (offset, indices) in &surface.parts {
-            let offset = [*offset];
+        for TrianglePart { uniform, indices, .. } in &surface.parts {
+            let offset = [*uniform];
             let sets: [(&Set, &[u32]); 2] = [(&self.view_set, &[]), (&surface.set, &offset)];
             rendering.bind(&self.pipeline, "the pass of depths", &sets)?;
             let range = (&surface.indices, indices.clone());

@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     contours.prepare(&mut encoder, &[Placement::at_origin(Viewpoint::at(eye))], Method::Patches)?;
     extractor.record(&mut encoder.begin_compute_pass(&Default::default()), &contours);
-    let subject = Subject { contours: &contours, surface: &surface, lines: &lines };
+    let subject = Subject { contours: (&contours).into(), surface: &surface, lines: &lines };
     picture.draw(&mut encoder, &view, &[subject])?;
     gpu.queue.submit([encoder.finish()]);
 

@@ -1,18 +1,17 @@
 //! What is found of one model, and the memory that it takes.
 
 use drypoint_shaders::{
-    Arguments, Counters, Dispatch, Method, Placement, Plan, PlanLimits, Segment, Statistics,
-    Totals, Transform, Work, place,
+    Dispatch, Method, Placement, Plan, PlanLimits, Segment, Statistics, Transform, Work, place,
 };
 use glam::Vec4;
 use wgpu::BufferUsages;
 
 use crate::Error;
 use crate::bindings::bind;
-use crate::device::{allow, buffer, checked};
+use crate::device::{allow, buffer};
 use crate::extractor::Extractor;
 use crate::model::Model;
-use crate::readback::Readback;
+use crate::output::Output;
 use crate::staging::Staging;
 
 /// What there is room for. One buffer holds the segments, which on devices with common limits of 128 MiB are
@@ -36,10 +35,7 @@ pub struct Contours {
     device: wgpu::Device,
     input: wgpu::Buffer,
     layout: InputLayout,
-    counters: wgpu::Buffer,
-    totals: wgpu::Buffer,
-    arguments: wgpu::Buffer,
-    segments: wgpu::Buffer,
+    output: Output,
     pub(crate) work_bindings: wgpu::BindGroup,
     pub(crate) tally_bindings: wgpu::BindGroup,
     pub(crate) dispatches: Vec<Dispatch>,
@@ -48,7 +44,6 @@ pub struct Contours {
     transforms: Vec<Transform>,
     work: Vec<u8>,
     staging: Staging,
-    readback: Readback,
 }
 
 /// Where each kind of input lies in its buffer.
@@ -87,16 +82,9 @@ impl Contours {
         allow(device, "the placements of a frame", transforms, BufferUsages::STORAGE)?;
         let dispatches = most_dispatches(model, capacity, limits);
         let layout = InputLayout::new(&device.limits(), capacity.placements, dispatches);
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let read = usage | BufferUsages::COPY_SRC;
-        let make = |what, size: usize, usage| buffer(device, what, size as u64, usage);
-        let input =
-            buffer(device, "the input of a frame", layout.size, usage | BufferUsages::UNIFORM)?;
-        let counters = make("counters", size_of::<Counters>(), read)?;
-        let totals = make("totals", size_of::<Totals>(), read)?;
-        let arguments = make("arguments", size_of::<Arguments>(), read | BufferUsages::INDIRECT)?;
-        let size = u64::from(capacity.segments) * size_of::<Segment>() as u64;
-        let segments = buffer(device, "segments", size, read | BufferUsages::VERTEX)?;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::UNIFORM;
+        let input = buffer(device, "the input of a frame", layout.size, usage)?;
+        let output = Output::new(device, capacity.segments)?;
         let part = |offset, size| {
             let size = wgpu::BufferSize::new(size);
             wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &input, offset, size })
@@ -104,7 +92,8 @@ impl Contours {
         let work = || part(layout.work, size_of::<Work>() as u64);
         let viewpoints = part(0, u64::from(capacity.placements.max(1)) * size_of::<Vec4>() as u64);
         let [counted, added, arguing, found] =
-            [&counters, &totals, &arguments, &segments].map(wgpu::Buffer::as_entire_binding);
+            [&output.counters, &output.totals, &output.arguments, &output.segments]
+                .map(wgpu::Buffer::as_entire_binding);
         let extracting = vec![work(), counted.clone(), viewpoints, found];
         let tallying = vec![work(), counted, added, arguing];
         Ok(Self {
@@ -125,16 +114,12 @@ impl Contours {
             limits,
             device: device.clone(),
             layout,
-            counters,
-            totals,
-            arguments,
-            segments,
+            output,
             dispatches: Vec::with_capacity(dispatches),
             viewpoints: Vec::with_capacity(capacity.placements as usize),
             transforms: Vec::with_capacity(capacity.placements as usize),
             work: Vec::with_capacity(layout.stride * dispatches),
             staging: Staging::new(device, layout.size)?,
-            readback: Readback::new(device, "statistics", size_of::<Totals>() as u64)?,
             input,
         })
     }
@@ -156,8 +141,9 @@ impl Contours {
         placements: &[Placement],
         method: Method,
     ) -> Result<(), Error> {
-        self.check(placements, method)?;
         self.dispatches.clear();
+        self.transforms.clear();
+        self.check(placements, method)?;
         let frames = &self.model.content.frames;
         place(frames, placements, &mut self.viewpoints, &mut self.transforms)
             .map_err(|index| Error::SingularPlacement { index })?;
@@ -175,14 +161,12 @@ impl Contours {
             (self.layout.transforms, bytemuck::cast_slice(&self.transforms)),
             (self.layout.work, &self.work),
         ];
-        if let Err(error) = self.staging.write(&self.device, encoder, &self.input, &pieces) {
+        if let Err(error) = self.staging.write(&self.device, encoder, &self.input, pieces) {
             self.transforms.clear();
             self.dispatches.clear();
             return Err(error);
         }
-        for counted in [&self.counters, &self.totals, &self.arguments] {
-            encoder.clear_buffer(counted, 0, None);
-        }
+        self.output.clear(encoder);
         Ok(())
     }
 
@@ -213,12 +197,12 @@ impl Contours {
 
     /// [`Segment`]s, in any order; as many as the arguments say. Storage and vertex buffer.
     pub fn segments(&self) -> &wgpu::Buffer {
-        &self.segments
+        &self.output.segments
     }
 
     /// [`Arguments`], to draw or to dispatch with. Indirect and storage buffer.
     pub fn arguments(&self) -> &wgpu::Buffer {
-        &self.arguments
+        &self.output.arguments
     }
 
     /// A [`Transform`](drypoint_shaders::Transform) for each placement, to bind as storage.
@@ -236,14 +220,13 @@ impl Contours {
 
     /// Asks for the statistics of what `encoder` holds by now: to be called after the pass has ended.
     pub fn request_statistics(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.readback.request(encoder, &self.totals);
+        self.output.request_statistics(encoder);
     }
 
     /// The newest statistics that have come since the last call, some frames after they were asked for.
     /// They come when the device is polled, which submitting does too.
     pub fn newest_statistics(&mut self) -> Option<Statistics> {
-        let capacity = self.capacity.segments;
-        self.readback.newest(|bytes| Statistics::new(&totals_of(bytes), capacity))
+        self.output.newest_statistics()
     }
 
     /// Waits for the GPU and reads the statistics of what was submitted last.
@@ -251,9 +234,7 @@ impl Contours {
     /// # Errors
     /// If the device is lost.
     pub fn read_statistics(&self, queue: &wgpu::Queue) -> Result<Statistics, Error> {
-        let size = size_of::<Totals>() as u64;
-        let bytes = read(&self.device, queue, &self.totals, size)?;
-        Ok(Statistics::new(&totals_of(&bytes), self.capacity.segments))
+        self.output.read_statistics(queue)
     }
 
     /// Waits for the GPU and reads all segments of what was submitted last, in any order.
@@ -261,17 +242,11 @@ impl Contours {
     /// # Errors
     /// [`Error::Overflow`] if not all fit, or if the device is lost.
     pub fn read_segments(&self, queue: &wgpu::Queue) -> Result<Vec<Segment>, Error> {
-        let statistics = self.read_statistics(queue)?;
-        if let Some(needed) = statistics.overflow() {
-            return Err(Error::Overflow { needed, capacity: self.capacity.segments });
-        }
-        let size = statistics.segments * size_of::<Segment>() as u64;
-        let bytes = read(&self.device, queue, &self.segments, size)?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes))
+        self.output.read_segments(queue)
     }
 
-    pub(crate) fn device(&self) -> &wgpu::Device {
-        &self.device
+    pub(crate) fn output(&self) -> &Output {
+        &self.output
     }
 
     /// Number of placements that it was prepared for last.
@@ -303,44 +278,4 @@ fn most_dispatches(model: &Model, capacity: Capacity, limits: PlanLimits) -> usi
     let methods = [Method::BruteForce, Method::Patches].into_iter();
     let count = |method| plan(model, method, instances, capacity, limits).most_dispatches();
     methods.map(count).max().unwrap_or(0)
-}
-
-fn totals_of(bytes: &[u8]) -> Totals {
-    bytemuck::pod_read_unaligned(&bytes[..size_of::<Totals>()])
-}
-
-/// Waits for the GPU and reads the first bytes of a buffer.
-pub(crate) fn read(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    source: &wgpu::Buffer,
-    size: u64,
-) -> Result<Vec<u8>, Error> {
-    if size == 0 {
-        return Ok(Vec::new());
-    }
-    let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
-    let descriptor = wgpu::BufferDescriptor {
-        label: Some("what is read back"),
-        size,
-        usage,
-        mapped_at_creation: false,
-    };
-    let (sender, receiver) = std::sync::mpsc::channel();
-    let copy = checked(device, "what is read back", || {
-        let copy = device.create_buffer(&descriptor);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(source, 0, &copy, 0, size);
-        queue.submit([encoder.finish()]);
-        copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody listens any more if polling failed.
-            let _ = sender.send(result);
-        });
-        copy
-    })?;
-    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| Error::DeviceLost)?;
-    let mapped = receiver.try_recv().map_err(|_| Error::DeviceLost)?;
-    mapped.map_err(|_| Error::DeviceLost)?;
-    let view = copy.slice(..).get_mapped_range().map_err(|_| Error::DeviceLost)?;
-    Ok(view.to_vec())
 }

@@ -1,7 +1,8 @@
 //! Depths of the surfaces that hide lines.
 
 use drypoint_mesh::Mesh;
-use drypoint_shaders::{DEPTH, DepthOrder, Part, Triangles};
+use drypoint_mesh::rig::Skin;
+use drypoint_shaders::{DEPTH, DepthOrder, Part, TrianglePart, Triangles};
 use glam::Mat4;
 use wgpu::BufferUsages;
 
@@ -9,7 +10,9 @@ use crate::Error;
 use crate::bindings::{READ, bind, layout, uniform};
 use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
+use crate::found::Found;
 use crate::raster::{Drawing, compare};
+use crate::rig_contours::RigContours;
 use crate::staging::Staging;
 
 const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
@@ -98,30 +101,48 @@ impl DepthPass {
         scene_to_clip: Mat4,
     ) -> Result<(), Error> {
         let bytes = bytemuck::bytes_of(&scene_to_clip);
-        self.staging.write(&self.device, encoder, &self.view, &[(0, bytes)])
+        self.staging.write(&self.device, encoder, &self.view, [(0, bytes)])
     }
 
     /// Draws all that `contours`, which `surface` was made for, was prepared with. One draw for each part.
-    pub fn record(&self, pass: &mut wgpu::RenderPass<'_>, surface: &Surface, contours: &Contours) {
-        let instances = contours.placement_count() / contours.model().part_count().max(1);
+    ///
+    /// Of a rig, one for each shape, and one for each instance that has faces that bend.
+    pub fn record<'a>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        surface: &Surface,
+        contours: impl Into<Found<'a>>,
+    ) {
+        let Found { positions, instances, posed: [first_vertex, vertex_count], .. } =
+            contours.into();
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.view_bindings, &[]);
-        pass.set_vertex_buffer(0, contours.model().positions().slice(..));
+        pass.set_vertex_buffer(0, positions.slice(..));
         pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (offset, indices) in &surface.parts {
-            pass.set_bind_group(1, &surface.bindings, &[*offset]);
-            pass.draw_indexed(indices.clone(), 0, 0..instances);
+        for TrianglePart { uniform, indices, copies } in &surface.parts {
+            pass.set_bind_group(1, &surface.bindings, &[*uniform]);
+            if let Some(copies) = copies {
+                pass.draw_indexed(indices.clone(), 0, 0..instances * copies);
+                continue;
+            }
+            for instance in 0..instances {
+                #[expect(
+                    clippy::cast_possible_wrap,
+                    reason = "vertices fit a binding, 12 bytes each"
+                )]
+                let base = (first_vertex + instance * vertex_count) as i32;
+                pass.draw_indexed(indices.clone(), base, instance..instance + 1);
+            }
         }
     }
 }
 
-/// The triangles of the model that [`Contours`] look at: 12 bytes each.
+/// The triangles of the model that [`Contours`] or [`RigContours`] look at: 12 bytes each.
 #[derive(Debug)]
 pub struct Surface {
     indices: wgpu::Buffer,
     bindings: wgpu::BindGroup,
-    /// Where each part's uniform lies, and its indices.
-    parts: Vec<(u32, std::ops::Range<u32>)>,
+    parts: Vec<TrianglePart>,
 }
 
 impl Surface {
@@ -135,14 +156,35 @@ impl Surface {
             return Err(Error::OtherMeshes);
         }
         let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
-        let Triangles { indices, uniforms, parts } = Triangles::new(meshes, alignment);
+        let triangles = Triangles::new(meshes, alignment);
+        Self::upload(pass, triangles, contours.transforms())
+    }
+
+    /// Uploads the triangles of a rig that `contours` look at: those of each shape once, and those that bend,
+    /// which are posed by what finds contours. `skin` is what the model was made of.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn of_rig(pass: &DepthPass, contours: &RigContours, skin: &Skin) -> Result<Self, Error> {
+        let alignment = pass.device.limits().min_uniform_buffer_offset_alignment as usize;
+        let uploaded = &*contours.model().uploaded;
+        let (layout, bending) = (&uploaded.layout, &uploaded.bending_faces[..]);
+        let most_instances = contours.capacity().instances;
+        let triangles = Triangles::of_rig((layout, bending), skin, most_instances, alignment);
+        Self::upload(pass, triangles.ok_or(Error::OtherMeshes)?, contours.transforms())
+    }
+
+    fn upload(
+        pass: &DepthPass,
+        Triangles { indices, uniforms, parts }: Triangles,
+        transforms: wgpu::BufferBinding<'_>,
+    ) -> Result<Self, Error> {
+        let device = &pass.device;
         let uniforms = filled(device, "the parts of a surface", &uniforms, BufferUsages::UNIFORM)?;
         let size = wgpu::BufferSize::new(size_of::<Part>() as u64);
         let part = wgpu::BufferBinding { buffer: &uniforms, offset: 0, size };
-        let resources = vec![
-            wgpu::BindingResource::Buffer(part),
-            wgpu::BindingResource::Buffer(contours.transforms()),
-        ];
+        let resources =
+            vec![wgpu::BindingResource::Buffer(part), wgpu::BindingResource::Buffer(transforms)];
         let layout = &pass.surface_layout;
         Ok(Self {
             bindings: bind(device, "the bindings of a surface", layout, resources)?,

@@ -156,8 +156,18 @@ pub(crate) fn filled<T: bytemuck::Pod>(
     content: &[T],
     usage: wgpu::BufferUsages,
 ) -> Result<wgpu::Buffer, Error> {
+    beginning_with(device, what, content, (0, usage))
+}
+
+/// A buffer that begins with `content` and has at least `size` bytes.
+pub(crate) fn beginning_with<T: bytemuck::Pod>(
+    device: &wgpu::Device,
+    what: &'static str,
+    content: &[T],
+    (size, usage): (u64, wgpu::BufferUsages),
+) -> Result<wgpu::Buffer, Error> {
     let bytes: &[u8] = bytemuck::cast_slice(content);
-    let size = (bytes.len() as u64).max(16);
+    let size = (bytes.len() as u64).max(size).max(16);
     allow(device, what, size, usage)?;
     let descriptor =
         wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: true };

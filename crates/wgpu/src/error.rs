@@ -1,5 +1,7 @@
 //! What can go wrong.
 
+use drypoint_shaders::PoseError;
+
 /// Why something could not be made, recorded or read. Nothing was done then, unless it says so.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[non_exhaustive]
@@ -75,6 +77,35 @@ pub enum Error {
         /// Its index.
         index: usize,
     },
+    /// More instances of a rig than there is room for.
+    #[error("{given} instances are given, there is room for {capacity}")]
+    TooManyInstances {
+        /// Number of instances given.
+        given: usize,
+        /// The capacity that the output was made with.
+        capacity: u32,
+    },
+    /// The placement of an instance of a rig flattens it, or is not finite.
+    #[error("the placement of instance {instance} has no inverse")]
+    SingularInstance {
+        /// Its index.
+        instance: u32,
+    },
+    /// A pose has not as many carriers and weights as the rig.
+    #[error("the pose of instance {instance} is of another rig")]
+    OtherPose {
+        /// Index of the instance.
+        instance: u32,
+    },
+    /// A pose has a carrier or a weight that is not finite.
+    #[error("the pose of instance {instance} is not finite")]
+    InfinitePose {
+        /// Index of the instance.
+        instance: u32,
+    },
+    /// A rig is uploaded with the patches of its shapes, in their order.
+    #[error("the patches are not those of the rig's shapes")]
+    OtherPatches,
     /// A surface is made from the meshes that the model's parts were made from.
     #[error("the meshes of the surface are not those that the model was made from")]
     OtherMeshes,
@@ -102,4 +133,14 @@ pub enum Error {
         /// Number that fits.
         capacity: u32,
     },
+}
+
+impl From<PoseError> for Error {
+    fn from(error: PoseError) -> Self {
+        match error {
+            PoseError::Singular(instance) => Self::SingularInstance { instance },
+            PoseError::Other(instance) => Self::OtherPose { instance },
+            PoseError::Infinite(instance) => Self::InfinitePose { instance },
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Pipelines, and how a frame's work is recorded with them.
 
+use std::sync::{Arc, OnceLock};
+
 use drypoint_shaders::{
     BRUTE_FORCE, PATCHES, POSITIONS, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS,
     Work, prelude,
@@ -9,6 +11,8 @@ use crate::Error;
 use crate::bindings::{READ, WRITE, layout, uniform};
 use crate::contours::Contours;
 use crate::device::checked;
+use crate::rig_contours::RigContours;
+use crate::rig_pipelines::RigPipelines;
 
 /// How shaders are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +43,9 @@ pub struct Extractor {
     super_patches: wgpu::ComputePipeline,
     tally: wgpu::ComputePipeline,
     placing: wgpu::ComputePipeline,
+    subgroups: Subgroups,
+    /// Made with the first rig.
+    rig: OnceLock<Arc<RigPipelines>>,
 }
 
 impl Extractor {
@@ -100,6 +107,8 @@ impl Extractor {
             tally: pipeline(device, &[None, Some(&tally_layout)], TALLY, "tally"),
             placing: pipeline(device, &[Some(&placing_layout)], POSITIONS, "place_segments"),
             device: device.clone(),
+            subgroups,
+            rig: OnceLock::new(),
             model_layout,
             work_layout,
             tally_layout,
@@ -113,20 +122,49 @@ impl Extractor {
     /// Some microseconds on the CPU, unless the work has to be split.
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, contours: &Contours) {
         for (index, dispatch) in contours.dispatches.iter().enumerate() {
-            let pipeline = match dispatch.stage {
-                Stage::Edges => &self.brute_force,
-                Stage::Patches => &self.patches,
-                Stage::SuperPatches => &self.super_patches,
-            };
             let offset = contours.work_offset(index);
-            pass.set_pipeline(pipeline);
+            pass.set_pipeline(self.of_stage(dispatch.stage));
             pass.set_bind_group(0, &contours.model().content.bindings[dispatch.chunk], &[]);
             pass.set_bind_group(1, &contours.work_bindings, &[offset]);
             pass.dispatch_workgroups(dispatch.grid[0], dispatch.grid[1], 1);
-            pass.set_pipeline(&self.tally);
-            pass.set_bind_group(1, &contours.tally_bindings, &[offset]);
-            pass.dispatch_workgroups(1, 1, 1);
+            self.tally(pass, &contours.tally_bindings, offset);
         }
+    }
+
+    /// The same of a rig. Both kinds may share a pass.
+    pub fn record_rig(&self, pass: &mut wgpu::ComputePass<'_>, contours: &RigContours) {
+        contours.record(self, pass);
+    }
+
+    pub(crate) fn of_stage(&self, stage: Stage) -> &wgpu::ComputePipeline {
+        match stage {
+            Stage::Edges => &self.brute_force,
+            Stage::Patches => &self.patches,
+            Stage::SuperPatches => &self.super_patches,
+        }
+    }
+
+    /// Records what comes after a dispatch that finds contour edges.
+    pub(crate) fn tally(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        bindings: &wgpu::BindGroup,
+        offset: u32,
+    ) {
+        pass.set_pipeline(&self.tally);
+        pass.set_bind_group(1, bindings, &[offset]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// The shaders of rigs, compiled when they are first asked for.
+    pub(crate) fn rig_pipelines(&self) -> Result<Arc<RigPipelines>, Error> {
+        if let Some(known) = self.rig.get() {
+            return Ok(Arc::clone(known));
+        }
+        let made = checked(&self.device, "the shaders of rigs", || {
+            RigPipelines::build(&self.device, self.limits.width, self.subgroups)
+        })?;
+        Ok(Arc::clone(self.rig.get_or_init(|| Arc::new(made))))
     }
 
     /// The device it was made for.
@@ -164,7 +202,7 @@ impl Extractor {
     }
 }
 
-fn pipeline(
+pub(crate) fn pipeline(
     device: &wgpu::Device,
     layouts: &[Option<&wgpu::BindGroupLayout>],
     source: &str,

@@ -6,14 +6,15 @@ use wgpu::BufferUsages;
 
 use crate::Error;
 use crate::bindings::{READ, bind, layout, texture, uniform};
-use crate::contours::Contours;
 use crate::device::{buffer, checked, filled};
+use crate::found::Found;
 use crate::raster::Drawing;
 use crate::staging::Staging;
 
 const DRAWING: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX_FRAGMENT;
 
-/// Draws the segments of [`Contours`] as lines of some pixels in width, with smooth edges and round ends,
+/// Draws the segments of [`Contours`](crate::Contours) or
+/// [`RigContours`](crate::RigContours) as lines of some pixels in width, with smooth edges and round ends,
 /// where no surface hides them.
 ///
 /// In two steps. [`cover`](Self::cover) finds how much of each pixel the lines cover; where several do, the
@@ -98,7 +99,7 @@ impl LinePass {
     ) -> Result<(), Error> {
         let stroke = style.stroke(scene_to_clip);
         let bytes = bytemuck::bytes_of(&stroke);
-        self.staging.write(&self.device, encoder, &self.stroke, &[(0, bytes)])
+        self.staging.write(&self.device, encoder, &self.stroke, [(0, bytes)])
     }
 
     /// Records a render pass that finds what `lines` cover of `target`. Replaces what covered it before.
@@ -183,7 +184,7 @@ fn inking<'a>(
     }
 }
 
-/// What a [`LinePass`] draws of one [`Contours`]: all segments that are found.
+/// What a [`LinePass`] draws of one [`Found`]: all segments.
 #[derive(Debug)]
 pub struct Lines {
     bindings: wgpu::BindGroup,
@@ -195,16 +196,17 @@ impl Lines {
     ///
     /// # Errors
     /// If the device is lost.
-    pub fn new(pass: &LinePass, contours: &Contours) -> Result<Self, Error> {
+    pub fn new<'a>(pass: &LinePass, contours: impl Into<Found<'a>>) -> Result<Self, Error> {
+        let found = contours.into();
         let resources = vec![
-            contours.segments().as_entire_binding(),
-            contours.model().positions().as_entire_binding(),
-            wgpu::BindingResource::Buffer(contours.transforms()),
+            found.output.segments.as_entire_binding(),
+            found.positions.as_entire_binding(),
+            wgpu::BindingResource::Buffer(found.transforms),
         ];
         let label = "the bindings of lines";
         Ok(Self {
             bindings: bind(&pass.device, label, &pass.lines_layout, resources)?,
-            arguments: contours.arguments().clone(),
+            arguments: found.output.arguments.clone(),
         })
     }
 }

@@ -75,12 +75,7 @@ impl Model {
         let positions: &[f32] = bytemuck::cast_slice(&content.positions);
         let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC;
         let positions = filled(device, "the vertices of a model", positions, usage)?;
-        let limit = largest_storage(&device.limits());
-        let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
-        let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
-        let chunks = content.chunks(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
-        let upload = |chunk: &Chunk| upload_chunk(extractor, content, chunk);
-        let bindings = chunks.iter().map(upload).collect::<Result<_, _>>()?;
+        let (chunks, bindings) = upload_chunks(extractor, content)?;
         Ok(Self {
             content: Arc::new(Uploaded {
                 frames: content.frames.clone(),
@@ -119,6 +114,20 @@ impl Model {
     pub fn positions(&self) -> &wgpu::Buffer {
         &self.content.positions
     }
+}
+
+/// Cuts a content into pieces that fit the device's bindings, and uploads them.
+pub(crate) fn upload_chunks(
+    extractor: &Extractor,
+    content: &Content,
+) -> Result<(Vec<Chunk>, Vec<wgpu::BindGroup>), Error> {
+    let limit = largest_storage(&extractor.device().limits());
+    let fitting = |size: usize| u32::try_from(limit / size as u64).unwrap_or(u32::MAX);
+    let most_edges = fitting(size_of::<EdgePlanes>()).min(extractor.plan_limits().edges);
+    let chunks = content.chunks(most_edges.max(MAX_PIECE), fitting(size_of::<Group>()));
+    let upload = |chunk: &Chunk| upload_chunk(extractor, content, chunk);
+    let bindings = chunks.iter().map(upload).collect::<Result<_, _>>()?;
+    Ok((chunks, bindings))
 }
 
 fn upload_chunk(

@@ -3,10 +3,11 @@
 use drypoint_shaders::{DepthOrder, View, divide_by_alpha};
 
 use crate::Error;
-use crate::contours::{Contours, read};
 use crate::depth_pass::{DepthPass, Surface};
 use crate::device::checked;
+use crate::found::Found;
 use crate::line_pass::{LinePass, LineTarget, Lines};
+use crate::output::read;
 
 /// Lines on a background, off screen: the passes and textures that this takes, 9 bytes a pixel and as much
 /// again to read them.
@@ -24,10 +25,10 @@ pub struct Picture {
 }
 
 /// What is drawn of one model: its contours, the triangles that hide lines, and the lines.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Subject<'a> {
     /// Prepared and recorded before.
-    pub contours: &'a Contours,
+    pub contours: Found<'a>,
     /// Made for them with [`Picture::depth_pass`].
     pub surface: &'a Surface,
     /// Made for them with [`Picture::line_pass`].
@@ -124,7 +125,7 @@ impl Picture {
             ..Default::default()
         });
         for Subject { contours, surface, .. } in subjects {
-            self.depth_pass.record(&mut pass, surface, contours);
+            self.depth_pass.record(&mut pass, surface, contours.clone());
         }
     }
 

@@ -80,12 +80,12 @@ impl Staging {
     }
 
     /// Copies the bytes of each piece to its place in `target`, when the GPU comes to `encoder`.
-    pub(crate) fn write(
+    pub(crate) fn write<'a>(
         &mut self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::Buffer,
-        pieces: &[(u64, &[u8])],
+        pieces: impl IntoIterator<Item = (u64, &'a [u8])> + Clone,
     ) -> Result<(), Error> {
         // Free from the next poll of the device on.
         let is_abandoned = |slot: &&Slot| slot.state.load(Ordering::Acquire) == ABANDONED;
@@ -102,14 +102,15 @@ impl Staging {
             None => self.add(device)?,
         };
         let Slot { buffer, state } = &self.slots[index];
-        for &(offset, bytes) in pieces.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+        let pieces = || pieces.clone().into_iter().filter(|(_, bytes)| !bytes.is_empty());
+        for (offset, bytes) in pieces() {
             let range = offset..offset + bytes.len() as u64;
             let mut view =
                 buffer.slice(range).get_mapped_range_mut().map_err(|_| Error::DeviceLost)?;
             view.copy_from_slice(bytes);
         }
         buffer.unmap();
-        for &(offset, bytes) in pieces.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+        for (offset, bytes) in pieces() {
             encoder.copy_buffer_to_buffer(buffer, offset, target, offset, bytes.len() as u64);
         }
         let report = Report::new(state);

@@ -43,5 +43,7 @@ fn pictures_of_the_examples_have_lines() -> Result<(), Box<dyn Error>> {
     assert!((1e-4..0.02).contains(&tetrahedron), "{tetrahedron}");
     let field = darkness("render_graph", &[])?;
     assert!((0.01..0.2).contains(&field), "{field}");
+    let knots = darkness("rigged", &[])?;
+    assert!((0.005..0.2).contains(&knots), "{knots}");
     Ok(())
 }

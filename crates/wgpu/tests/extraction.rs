@@ -323,6 +323,7 @@ fn placements_that_cannot_be_are_refused() {
     ] {
         let found = extract(&gpu, &extractor, &mut contours, &placements, Method::Patches);
         assert_eq!(found, Err(error));
+        assert_eq!(contours.placement_count(), 0);
     }
     // What was refused left nothing of the frame before.
     let once = extract(&gpu, &extractor, &mut contours, &[good], Method::Patches).expect("it fits");

@@ -83,8 +83,10 @@ fn draw(gpu: &Gpu, scene: &[(&Mesh, &[DAffine3])], look: &Look) -> Vec<u8> {
     let surfaces: Vec<_> = contours.iter().zip(scene).map(surface).collect();
     let lines = |contours| Lines::new(picture.line_pass(), contours).unwrap();
     let lines: Vec<_> = contours.iter().map(lines).collect();
-    let subject = |((contours, surface), lines)| Subject { contours, surface, lines };
-    let subjects: Vec<_> = contours.iter().zip(&surfaces).zip(&lines).map(subject).collect();
+    let parts = contours.iter().zip(&surfaces).zip(&lines);
+    let subjects: Vec<_> = parts
+        .map(|((contours, surface), lines)| Subject { contours: contours.into(), surface, lines })
+        .collect();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     picture.draw(&mut encoder, &look.view(), &subjects).unwrap();
     gpu.queue.submit([encoder.finish()]);

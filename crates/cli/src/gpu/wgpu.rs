@@ -29,7 +29,7 @@ pub(super) fn draw(frame: &Frame<'_>) -> Result<Vec<u8>, Error> {
     let (contours, _) = find(&gpu, &extractor, &model, (&frame.placement, frame.method()))?;
     let surface = Surface::new(picture.depth_pass(), &contours, &[frame.mesh])?;
     let lines = Lines::new(picture.line_pass(), &contours)?;
-    let subject = Subject { contours: &contours, surface: &surface, lines: &lines };
+    let subject = Subject { contours: (&contours).into(), surface: &surface, lines: &lines };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     picture.draw(&mut encoder, &frame.view, &[subject])?;
     gpu.queue.submit([encoder.finish()]);

@@ -6,7 +6,11 @@ mod shared;
 
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use drypoint_wgpu::{Contours, Error, Extractor, Gpu, Method, Placement, Segment};
+use drypoint_mesh::EdgeId;
+use drypoint_mesh::rig::Skin;
+use drypoint_wgpu::{
+    Contours, Error, Extractor, Gpu, Method, Placement, RigContours, RigInstance, Segment,
+};
 
 #[allow(unused_imports, reason = "each test program uses what it needs")]
 pub(crate) use shared::{Expected, example, is_without_gpu, patches, placements};
@@ -89,4 +93,26 @@ pub(crate) fn extract(
     let mut segments = contours.read_segments(&gpu.queue)?;
     segments.sort_unstable();
     Ok(segments)
+}
+
+/// The same of a rig: the edges of each instance, sorted.
+pub(crate) fn extract_rig(
+    gpu: &Gpu,
+    extractor: &Extractor,
+    (contours, skin): (&mut RigContours, &Skin),
+    instances: &[RigInstance<'_>],
+    method: Method,
+) -> Result<Vec<Vec<EdgeId>>, Error> {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    contours.prepare(&mut encoder, instances, method)?;
+    let descriptor = wgpu::ComputePassDescriptor::default();
+    extractor.record_rig(&mut encoder.begin_compute_pass(&descriptor), contours);
+    gpu.queue.submit([encoder.finish()]);
+    let mut found = vec![Vec::new(); instances.len()];
+    for segment in contours.read_segments(&gpu.queue)? {
+        let edge = contours.edge(skin, &segment);
+        found[edge.instance as usize].push(edge.edge);
+    }
+    found.iter_mut().for_each(|edges| edges.sort_unstable());
+    Ok(found)
 }
