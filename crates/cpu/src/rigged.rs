@@ -27,7 +27,8 @@ pub struct RigExtractor<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct RigContours {
     edges: Vec<EdgeId>,
-    of_part: Contours<EdgeId>,
+    /// Of one part after the other.
+    found: Contours<EdgeId>,
     /// Of the vertices of loose faces.
     positions: Vec<Vec3>,
     /// Of the faces beside loose edges.
@@ -115,14 +116,37 @@ impl<'a> RigExtractor<'a> {
         viewpoint: Viewpoint,
         contours: &mut RigContours,
     ) -> Statistics {
+        self.extract(pose, viewpoint, contours, Extractor::edges)
+    }
+
+    /// The same as [`RigExtractor::edges`] with no patch skipped: for measuring what they gain.
+    ///
+    /// # Panics
+    /// As [`RigExtractor::edges`].
+    pub fn all_edges(
+        &self,
+        pose: &Pose,
+        viewpoint: Viewpoint,
+        contours: &mut RigContours,
+    ) -> Statistics {
+        self.extract(pose, viewpoint, contours, Extractor::all_edges)
+    }
+
+    fn extract(
+        &self,
+        pose: &Pose,
+        viewpoint: Viewpoint,
+        contours: &mut RigContours,
+        of_part: impl Fn(&Extractor<'a>, Viewpoint, &mut Contours<EdgeId>) -> Statistics,
+    ) -> Statistics {
         let faces = FaceSides::new(self.rig, self.skin, pose, viewpoint);
-        let RigContours { edges, of_part, positions, sides } = contours;
+        let RigContours { edges, found, positions, sides } = contours;
         edges.clear();
         let mut statistics = Statistics::default();
         for (number, part) in (0..).zip(self.skin.parts()) {
             if let Some(carried) = faces.carried(number) {
-                statistics += self.extractors[part.shape as usize].edges(carried, of_part);
-                edges.extend(of_part.iter().map(|&edge| part.edge_in_rig(edge)));
+                statistics += of_part(&self.extractors[part.shape as usize], carried, found);
+                edges.extend(found.iter().map(|&edge| part.edge_in_rig(edge)));
             } else {
                 let shape = &self.skin.shapes()[part.shape as usize];
                 let kept = shape.edges(self.filter).map(|edge| part.edge_in_rig(edge));

@@ -37,6 +37,11 @@ fn check(rig: &Rig, poses: &[Pose], size: f64) -> [usize; 2] {
                 edges.sort_unstable();
                 assert_eq!(edges, expected, "{filter:?} from {viewpoint:?}");
                 assert_eq!(statistics.contour_edges, expected.len());
+                let every = extractor.all_edges(pose, viewpoint, &mut found);
+                assert_eq!(every.edges_tested, extractor.edge_count());
+                let mut edges = found.edges().to_vec();
+                edges.sort_unstable();
+                assert_eq!(edges, expected, "{filter:?} from {viewpoint:?}, all edges");
                 tested[0] += statistics.edges_tested;
                 tested[1] += extractor.edge_count();
             }
