@@ -29,6 +29,7 @@
 #[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod content;
 mod error;
+mod estimate;
 mod file;
 mod format;
 mod parts;
@@ -50,6 +51,7 @@ use std::fs;
 use std::path::Path;
 
 pub use error::{Fault, Place, ReadError};
+pub use estimate::{Estimate, estimate};
 pub use format::Format;
 pub use parts::{Dropped, Model, Part};
 
@@ -120,16 +122,32 @@ pub fn parse_with(
     folder: Option<&Path>,
     options: &ReadOptions,
 ) -> Result<Model, ReadError> {
+    parse_in_pieces(format, bytes, PIECE, folder, options)
+}
+
+/// As [`parse_with`], in pieces of some `size` bytes instead of [`PIECE`], which changes nothing: tests
+/// and fuzz targets compare, whose files are smaller than one piece.
+///
+/// # Errors
+/// As [`parse_with`].
+#[doc(hidden)]
+pub fn parse_in_pieces(
+    format: Format,
+    bytes: &[u8],
+    size: usize,
+    folder: Option<&Path>,
+    options: &ReadOptions,
+) -> Result<Model, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::Empty);
     }
     match format {
         #[cfg(feature = "obj")]
-        Format::Obj => obj::parse(bytes, options),
+        Format::Obj => obj::parse(bytes, size, options),
         #[cfg(feature = "ply")]
-        Format::Ply => ply::parse(bytes, options),
+        Format::Ply => ply::parse(bytes, size, options),
         #[cfg(feature = "stl")]
-        Format::Stl => stl::parse(bytes, options),
+        Format::Stl => stl::parse(bytes, size, options),
         #[cfg(feature = "gltf")]
         Format::Gltf => gltf::parse(bytes, folder, options),
         #[cfg(not(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf")))]

@@ -11,16 +11,16 @@
 use memchr::memchr;
 use rayon::prelude::*;
 
+use super::ReadOptions;
 use super::content::Content;
 use super::error::{Fault, Place, ReadError, lossy};
 use super::parts::Model;
 use super::text::{self, Lines, Plain, Words};
-use super::{PIECE, ReadOptions};
 
 /// Reads an OBJ file: `v`, `f`, `o`, `g` and `usemtl` statements; all others are ignored.
-pub(super) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Model, ReadError> {
+pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<Model, ReadError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match in_pieces(bytes, PIECE, options) {
+    match in_pieces(bytes, size, options) {
         Some(content) => content.into_model(),
         None => in_one(bytes, options)?.into_model(),
     }

@@ -26,9 +26,9 @@ const HEADER: usize = 84;
 const FACET: usize = 50;
 
 /// Reads an STL file, text or binary.
-pub(super) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Model, ReadError> {
+pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<Model, ReadError> {
     let content = if is_ascii_stl(bytes) {
-        match in_pieces(bytes, PIECE, options) {
+        match in_pieces(bytes, size, options) {
             Some(content) => content,
             None => in_one(bytes, options)?,
         }

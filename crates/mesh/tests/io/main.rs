@@ -2,6 +2,7 @@
 #![cfg(all(feature = "obj", feature = "ply", feature = "stl", feature = "gltf"))]
 
 mod errors;
+mod estimates;
 mod files;
 mod gltf;
 mod hostile;

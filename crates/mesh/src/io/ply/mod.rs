@@ -17,16 +17,49 @@ mod row;
 
 use rayon::prelude::*;
 
+use super::ReadOptions;
 use super::error::ReadError;
 use super::parts::Model;
-use super::{PIECE, ReadOptions};
 use crate::io::content::Content;
-use header::Encoding;
+use header::{Encoding, Kind};
 use row::Rows;
 
 /// Reads a PLY file.
-pub(super) fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Model, ReadError> {
-    in_pieces(bytes, PIECE, options)?.into_model()
+pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<Model, ReadError> {
+    in_pieces(bytes, size, options)?.into_model()
+}
+
+/// About how many vertices and triangles a file of so many bytes holds that begins with `start`: what its
+/// header says, but no more than there are bytes for.
+pub(super) fn estimate(start: &[u8], bytes: u64) -> Option<[u64; 2]> {
+    let (header, lines) = header::parse(start).ok()?;
+    let mut left = bytes - (start.len() - lines.rest().len()) as u64;
+    let is_text = header.encoding == Encoding::Ascii;
+    let (mut vertices, mut triangles) = (0, 0);
+    for table in header.tables() {
+        // A value takes a digit and a separator.
+        let least =
+            if is_text { 2 * table.properties.len() } else { table.least_row_size() } as u64;
+        let rows = table.count.min(left / least);
+        match table.kind {
+            Kind::Vertex { .. } => vertices = rows,
+            // Faces mostly come last, and so tell by their bytes how many corners they have. No more
+            // than four, lest bytes of something else are taken for theirs.
+            Kind::Face { list } if !is_text => {
+                let value = table.properties[list].value.size() as u64;
+                let corners = (left / rows.max(1)).saturating_sub(least) / value;
+                triangles += rows * corners.clamp(3, 4).saturating_sub(2);
+            }
+            Kind::Face { .. } => triangles += rows,
+            Kind::Strips { list } => {
+                let value = if is_text { 2 } else { table.properties[list].value.size() as u64 };
+                triangles += left / value;
+            }
+            Kind::Other => {}
+        }
+        left -= rows * least;
+    }
+    Some([vertices, triangles])
 }
 
 /// What a file holds, read in pieces of some `size` bytes.
