@@ -10,6 +10,8 @@ use glam::DVec3;
 use crate::animation::AnimationArgs;
 use crate::frames::FrameArgs;
 use crate::fusion::FusionArgs;
+use crate::memory::Work;
+use crate::source::ReadArgs;
 use crate::view::ViewArgs;
 
 /// Draws the contours of triangle meshes as clean vectors, hidden lines removed
@@ -106,6 +108,8 @@ pub(crate) struct DrawArgs {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
+    pub(crate) read: ReadArgs,
+    #[command(flatten)]
     pub(crate) view: ViewArgs,
     #[command(flatten)]
     pub(crate) animation: AnimationArgs,
@@ -119,6 +123,14 @@ pub(crate) struct DrawArgs {
     pub(crate) edges: Option<Edges>,
     #[command(flatten)]
     pub(crate) fusion: FusionArgs,
+}
+
+impl DrawArgs {
+    /// What is to be done with the mesh.
+    pub(crate) fn work(&self) -> Work {
+        let is_plain = self.method == DrawMethod::Cpu && self.show == Show::Lines;
+        if is_plain { Work::Lines } else { Work::Patches }
+    }
 }
 
 /// What finds the lines and draws them.
@@ -195,6 +207,8 @@ pub(crate) struct PatchesArgs {
     /// Print what was built as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) read: ReadArgs,
     /// Edges to group: those that can be seen as contours, or all
     #[arg(long, value_enum, default_value = "convex")]
     pub(crate) edges: Edges,
@@ -239,6 +253,8 @@ pub(crate) struct ExtractArgs {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
+    pub(crate) read: ReadArgs,
+    #[command(flatten)]
     pub(crate) animation: AnimationArgs,
     #[command(flatten)]
     pub(crate) fusion: FusionArgs,
@@ -255,6 +271,8 @@ pub(crate) struct InfoArgs {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) read: ReadArgs,
     /// List the position of every vertex, in the order that `extract` counts in
     #[arg(long)]
     pub(crate) vertices: bool,

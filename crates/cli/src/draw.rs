@@ -156,7 +156,7 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
 /// The model in the pose that is asked for, and its patches if it comes with some. Those are of the mesh
 /// as it was read, any other that can move is drawn through its rig.
 fn load(args: &DrawArgs) -> Result<(Source, Option<PatchSet>), String> {
-    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if patches.is_some() {
         args.animation.check_patches(&args.model)?;
         return Ok((source, patches));

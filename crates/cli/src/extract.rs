@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::args::{ExtractArgs, Method};
 use crate::gpu::{self, Api};
+use crate::memory::Work;
 use crate::output::{print, print_json};
 use crate::patches;
 use crate::rigged;
@@ -64,6 +65,11 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     Ok(())
 }
 
+/// What is to be done with a mesh.
+fn work(args: &ExtractArgs) -> Work {
+    if args.method.is_some_and(goes_through_patches) { Work::Patches } else { Work::Edges }
+}
+
 pub(crate) fn goes_through_patches(method: Method) -> bool {
     method != Method::BruteForce
 }
@@ -77,7 +83,7 @@ fn viewpoint(args: &ExtractArgs) -> Result<Viewpoint, String> {
 }
 
 fn from_mesh(args: &ExtractArgs, viewpoint: Viewpoint) -> Result<Found, String> {
-    let source = Source::load(&args.model)?;
+    let source = Source::load(&args.model, args.read, work(args))?;
     if args.animation.find(&source)?.is_some() {
         return rigged::extract(args, &source, viewpoint);
     }

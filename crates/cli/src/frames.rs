@@ -107,7 +107,7 @@ struct Plan {
 pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
     let look = Look::new(args)?;
     let mut folder = Folder::check(folder)?;
-    let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref())?;
+    let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if loaded.is_some() {
         args.animation.check_patches(&args.model)?;
     }

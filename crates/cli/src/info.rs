@@ -6,6 +6,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use crate::args::InfoArgs;
+use crate::memory::Work;
 use crate::output::{print, print_json};
 use crate::source::Source;
 
@@ -13,7 +14,9 @@ use crate::source::Source;
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     faces: usize,
+    dropped_faces: usize,
     vertices: usize,
+    dropped_vertices: usize,
     welded_vertices: usize,
     interior: usize,
     boundary: usize,
@@ -66,7 +69,7 @@ struct Part<'a> {
 }
 
 pub(crate) fn run(args: &InfoArgs) -> Result<(), String> {
-    let source = Source::load(&args.model)?;
+    let source = Source::load(&args.model, args.read, Work::Edges)?;
     let adjacency = source.adjacency();
     let found = adjacency.report();
     let none = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
@@ -76,7 +79,9 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), String> {
     let report = Report {
         motion,
         faces: found.faces,
+        dropped_faces: source.model.dropped.faces,
         vertices: found.vertices,
+        dropped_vertices: source.model.dropped.vertices,
         welded_vertices: found.welded_vertices,
         interior: found.interior,
         boundary: found.boundary,
@@ -117,7 +122,9 @@ fn describe(name: &str, report: &Report) -> String {
     let rows = [
         ("faces", report.faces, ""),
         ("  degenerate", report.degenerate, "no area"),
+        ("faces left out", report.dropped_faces, "a vertex at no finite position"),
         ("vertices", report.vertices, ""),
+        ("  not finite", report.dropped_vertices, "used by no face"),
         ("  welded", report.welded_vertices, "at distinct positions"),
         ("interior edges", report.interior, "two faces"),
         ("  convex", report.convex, ""),

@@ -9,6 +9,7 @@ mod frames;
 mod fusion;
 mod gpu;
 mod info;
+mod memory;
 mod output;
 mod palette;
 mod patches;

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use crate::args::PatchesArgs;
 use crate::fusion::{FusionArgs, bound_name, profile_name, runtime_name};
+use crate::memory::Work;
 use crate::output::{Output, print_json, tell};
 use crate::progress::Stage;
 use crate::source::{PATCHES_EXTENSION, Source, is_named_patches};
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &PatchesArgs) -> Result<(), String> {
     if matches!(output, Output::File(_)) && !is_named_patches(&args.output) {
         return Err(format!("{name}: a patch file's name ends in .{PATCHES_EXTENSION}"));
     }
-    let source = Source::load(&args.model)?;
+    let source = Source::load(&args.model, args.read, Work::Patches)?;
     let start = Instant::now();
     let adjacency = source.adjacency();
     let patches = build(&source, &adjacency, args.edges.into(), &args.fusion)?;

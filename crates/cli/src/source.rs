@@ -4,10 +4,13 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
+use clap::Args;
 use drypoint_fusion::{PatchFileError, PatchSet, mesh_hash};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, io, shapes};
 
 use crate::args::Edges;
+use crate::memory::{self, Work};
+use crate::output::tell;
 use crate::progress::Stage;
 
 /// Extension of the files that `drypoint patches` writes.
@@ -22,6 +25,15 @@ const SHAPE_TRIANGLES: usize = 20_000;
 /// Most triangles of a built-in shape.
 const MOST_SHAPE_TRIANGLES: usize = 10_000_000;
 
+/// How a mesh file is read.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct ReadArgs {
+    /// Refuse a mesh file with a vertex that is NaN or infinite, rather than leave out the faces that
+    /// use it
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
 /// A mesh and what was known of it.
 pub(crate) struct Source {
     /// As the user gave it, for messages.
@@ -32,12 +44,13 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a mesh file, or builds `shape:NAME` or `shape:NAME:TRIANGLES`.
-    pub(crate) fn load(model: &Path) -> Result<Self, String> {
+    /// Reads a mesh file, or builds `shape:NAME` or `shape:NAME:TRIANGLES`, if there is memory for what
+    /// is to be done with it.
+    pub(crate) fn load(model: &Path, read: ReadArgs, work: Work) -> Result<Self, String> {
         let name = model.display().to_string();
-        let _stage = Stage::new(&format!("reading {name}"));
+        let stage = Stage::new(&format!("reading {name}"));
         if let Some(shape) = name.strip_prefix("shape:") {
-            let (shape, mesh) = build_shape(shape)?;
+            let (shape, mesh) = build_shape(shape, work)?;
             let triangles = 0..u32::try_from(mesh.triangles().len()).map_err(|e| e.to_string())?;
             let run = |name: &str| io::Part { name: name.to_owned(), triangles: triangles.clone() };
             let (parts, materials) = (vec![run(shape)], vec![run("")]);
@@ -50,8 +63,18 @@ impl Source {
         if model.is_dir() {
             return Err(format!("{name}: is a folder, not a mesh file"));
         }
-        let read = io::read(model).map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self { name, model: read, is_posed: false })
+        memory::check(model, None, work)?;
+        let options = io::ReadOptions { strict: read.strict };
+        let model = io::read_with(model, &options).map_err(|error| format!("{name}: {error}"))?;
+        drop(stage);
+        let io::Dropped { vertices, faces } = model.dropped;
+        if vertices > 0 {
+            tell(&format!(
+                "drypoint: {name}: {vertices} vertices are at no finite position, and {faces} faces that \
+                 use them are left out"
+            ));
+        }
+        Ok(Self { name, model, is_posed: false })
     }
 
     /// Reads a mesh for drawing, and with it the patches if `model` is a .patches file: that holds
@@ -59,10 +82,12 @@ impl Source {
     pub(crate) fn load_with_patches(
         model: &Path,
         mesh: Option<&Path>,
+        read: ReadArgs,
+        work: Work,
     ) -> Result<(Self, Option<PatchSet>), String> {
         let name = model.display();
         match (is_patches(model), mesh) {
-            (false, None) => Ok((Self::load(model)?, None)),
+            (false, None) => Ok((Self::load(model, read, work)?, None)),
             (false, Some(_)) => Err(format!("--model: {name} is a mesh itself, no .patches file")),
             (true, None) => Err(format!(
                 "{name}: holds no triangles, which hide lines; give the mesh it was built from \
@@ -70,7 +95,7 @@ impl Source {
             )),
             (true, Some(mesh)) => {
                 let patches = load_patches(model)?;
-                let source = Self::load(mesh)?;
+                let source = Self::load(mesh, read, Work::Patches)?;
                 if mesh_hash(source.mesh()) != patches.provenance().mesh_hash {
                     return Err(format!("{name}: was not built from {}", source.name));
                 }
@@ -155,7 +180,7 @@ pub(crate) fn holding(
     Err(format!("{name}: holds the patches of {held} edges; leave --edges out, or build it anew"))
 }
 
-fn build_shape(shape: &str) -> Result<(&str, Mesh), String> {
+fn build_shape(shape: &str, work: Work) -> Result<(&str, Mesh), String> {
     let (name, triangles) = match shape.split_once(':') {
         None => (shape, SHAPE_TRIANGLES),
         Some((name, count)) => match count.parse() {
@@ -167,6 +192,7 @@ fn build_shape(shape: &str) -> Result<(&str, Mesh), String> {
             }
         },
     };
+    memory::check(Path::new(&format!("shape:{shape}")), Some(triangles as u64), work)?;
     match shapes::by_name(name, triangles) {
         Some(mesh) if !mesh.triangles().is_empty() => Ok((name, mesh)),
         Some(_) => Err(format!("shape:{shape}: has no faces")),

@@ -11,6 +11,7 @@ mod frames;
 #[cfg(any(feature = "ash", feature = "wgpu"))]
 mod gpu;
 mod help;
+mod islands;
 mod moving;
 mod options;
 mod patches;
