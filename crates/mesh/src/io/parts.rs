@@ -90,8 +90,11 @@ impl Parts {
     /// # Errors
     /// More than [`MAX_TRIANGLES`].
     fn ending_at(mut self, count: usize) -> Result<Vec<Part>, MeshError> {
-        if self.starts.first().is_none_or(|&(_, start)| start > 0) {
-            self.starts.insert(0, (String::new(), 0));
+        match self.starts.first_mut() {
+            // What is before the first name belongs to an empty one.
+            Some((name, start)) if name.is_empty() => *start = 0,
+            Some((_, 0)) => {}
+            _ => self.starts.insert(0, (String::new(), 0)),
         }
         let index = |triangle: usize| {
             let too_many = MeshError::TooManyTriangles { count };

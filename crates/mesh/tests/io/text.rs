@@ -58,6 +58,11 @@ fn obj_materials_run_across_parts() {
     let model = parse(Format::Obj, text).unwrap();
     check_parts(&model, &[("", 0..1), ("a", 1..3), ("b", 3..5)]);
     check_materials(&model, &[("", 0..1), ("red wine", 1..4), ("", 4..5)]);
+    // An empty name is that of what is before the first.
+    let text = b"v 0 0 0\nf 1 1 1\nusemtl\ng\nf 1 1 1\nusemtl red\nf 1 1 1\n";
+    let model = parse(Format::Obj, text).unwrap();
+    check_materials(&model, &[("", 0..2), ("red", 2..3)]);
+    check_parts(&model, &[("", 0..3)]);
 }
 
 #[test]

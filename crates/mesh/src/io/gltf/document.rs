@@ -103,7 +103,17 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, ReadError> {
     Ok((glb.json, glb.bin))
 }
 
+/// What the parser says, in one line. It quotes the file at any length: its start says what is wrong, and
+/// its end where.
 fn invalid(message: String) -> ReadError {
+    const KEPT: usize = 80;
+    let mut message = message.replace(char::is_control, " ");
+    let (mut chars, mut last_chars) = (message.char_indices(), message.char_indices());
+    if let (Some((start, _)), Some((end, _))) = (chars.nth(KEPT), last_chars.nth_back(KEPT - 1))
+        && start < end
+    {
+        message.replace_range(start..end, "…");
+    }
     Fault::Document { message }.at(Place::Byte(0))
 }
 
