@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
-use drypoint_lines::LineClass;
 use drypoint_mesh::{EdgeFilter, shapes};
 use glam::DVec3;
 
 use crate::animation::AnimationArgs;
 use crate::frames::FrameArgs;
 use crate::fusion::FusionArgs;
+use crate::lines::LineArgs;
 use crate::memory::Work;
 use crate::source::ReadArgs;
 use crate::view::ViewArgs;
@@ -69,6 +69,7 @@ pub(crate) enum Command {
 Examples:
   drypoint draw bunny.obj -o bunny.svg
   drypoint draw part.stl --lines contour,crease --crease-angle 20 --view iso --ortho --up 0,0,1
+  drypoint draw robot.glb --lines all -o robot.svg
   drypoint draw hall.obj --eye 0,2,0 --target 10,2,0 --fov 70 -o hall.png --size 1600x900
   drypoint draw bunny.obj --hidden dashed --azimuth 30 --elevation 20 -o - | rsvg-convert > b.png
   drypoint draw bunny.obj --show patches --preset fast -o bunny.png
@@ -83,8 +84,13 @@ A model that can move is drawn at rest unless an animation poses it. All frames 
 that holds what moves in all of them, or from one distance where it goes around the model. Beside the
 frames lies frames.json, by which the same command knows them again.
 
+In an SVG each class of lines is a group, and each path says of which edges it is made, or which pairs
+of faces cross there. Of a model with several parts, or with names of materials, it also says of which
+part and which material, and ends where these do: those of the face in front.
+
 With --json prints one object: for each class of lines chains, segments, visible_length and
-hidden_length in pixels; and with --show patches or survivors in `patches` the numbers of edges,
+hidden_length in pixels; of such a model the pixels of visible line of each class by the names in
+`parts` and in `materials`; and with --show patches or survivors in `patches` the numbers of edges,
 patches, super_patches, survivors and edges_tested from this view. With --frames: frames, drawn, kept
 (they were there) and blank (of those drawn).")]
 pub(crate) struct DrawArgs {
@@ -153,34 +159,6 @@ pub(crate) enum Show {
     Patches,
     /// As patches, but only those that may hold a contour edge from here; the rest is grey
     Survivors,
-}
-
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Lines")]
-pub(crate) struct LineArgs {
-    /// Classes of lines to draw [default: contour,boundary; contour with --method wgpu or ash]
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) lines: Option<Vec<Class>>,
-    /// With --lines crease: draw edges that bend by this angle or more, in degrees [default: 30]
-    #[arg(long, value_name = "DEGREES", value_parser = number, allow_hyphen_values = true)]
-    pub(crate) crease_angle: Option<f64>,
-    /// What to do with hidden lines
-    #[arg(long, value_enum, default_value = "none")]
-    pub(crate) hidden: Hidden,
-    /// Leave out visible pieces shorter than this that touch no longer line, in pixels: the noise
-    /// of scans. 0 draws all [default: 6; 0 with --method wgpu or ash]
-    #[arg(long, value_name = "PIXELS", value_parser = number, allow_hyphen_values = true)]
-    pub(crate) specks: Option<f64>,
-    /// Width of the lines in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 1.5, value_parser = number)]
-    #[arg(allow_hyphen_values = true)]
-    pub(crate) width: f64,
-    /// Color of the lines, as in CSS: black, #1a2b3c, rgb(10 20 30)
-    #[arg(long, value_name = "COLOR", default_value = "black")]
-    pub(crate) color: String,
-    /// Color of the page, as in CSS, or none [default: none in an SVG, white in a PNG]
-    #[arg(long, value_name = "COLOR")]
-    pub(crate) background: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -276,36 +254,6 @@ pub(crate) struct InfoArgs {
     /// List the position of every vertex, in the order that `extract` counts in
     #[arg(long)]
     pub(crate) vertices: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Class {
-    /// Where the surface turns away from the viewer
-    Contour,
-    /// Where the surface ends
-    Boundary,
-    /// Where the surface bends sharply
-    Crease,
-}
-
-impl From<Class> for LineClass {
-    fn from(class: Class) -> Self {
-        match class {
-            Class::Contour => Self::Contour,
-            Class::Boundary => Self::Boundary,
-            Class::Crease => Self::Crease,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Hidden {
-    /// Left out
-    None,
-    /// Dashed and thin
-    Dashed,
-    /// Thin
-    Solid,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 use drypoint_cpu::extract_patches;
 use drypoint_fusion::PatchSet;
 use drypoint_lines::{
-    Camera, Color, Drawing, HiddenLines, Layer, LineOptions, Occluders, Segments, Style,
+    Camera, Color, Drawing, HiddenLines, Layer, LineClass, Occluders, Segments, Style,
     VisibilityParams, filter_for_drawing, to_png, to_svg,
 };
 use drypoint_mesh::{EdgeFilter, EdgeId, MeshAdjacency, contour_edges};
 use serde::Serialize;
 
-use crate::args::{Class, DrawArgs, Hidden, LineArgs, Show};
+use crate::args::{DrawArgs, Show};
 use crate::frames;
 use crate::gpu::{self, Api};
+use crate::lines::{self, Drawn, Hidden, Lengths, LineArgs, Lines};
 use crate::output::{Output, print_json, tell};
 use crate::patches;
 use crate::progress::Stage;
@@ -22,14 +23,8 @@ use crate::show::{self, Shown};
 use crate::source::{self, Source};
 use crate::view;
 
-/// Degrees from which an edge is a crease, unless the user says otherwise.
-const CREASE_ANGLE: f64 = 30.0;
-
 /// Pixels below which a visible piece of line is a speck, unless the user says otherwise.
 const SPECKS: f64 = 6.0;
-
-/// Classes of lines that are drawn, unless the user says otherwise.
-const CLASSES: &[Class] = &[Class::Contour, Class::Boundary];
 
 /// What is on the page, in the shape that scripts read.
 #[derive(Debug, Serialize)]
@@ -37,18 +32,11 @@ struct Report {
     #[serde(flatten)]
     lines: BTreeMap<&'static str, Drawn>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    parts: Option<Lengths>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    materials: Option<Lengths>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     patches: Option<show::Counts>,
-}
-
-/// What is on the page of one class of lines.
-#[derive(Debug, Serialize)]
-struct Drawn {
-    chains: usize,
-    segments: usize,
-    /// In pixels.
-    visible_length: f64,
-    /// In pixels.
-    hidden_length: f64,
 }
 
 /// The kind of file that a picture is.
@@ -74,7 +62,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     }
     args.frames.check_without()?;
     let style = style(&args.lines)?;
-    check(&args.lines)?;
+    args.lines.check()?;
     let shown = shown(args)?;
     if let Some(api) = args.method.api() {
         return run_on_gpu(api, args, &style);
@@ -116,7 +104,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     if args.json {
         let patches = patches.as_ref().filter(|_| shown.is_some());
         let patches = patches.map(|patches| show::counts(patches, camera.viewpoint()));
-        print_json(&Report { lines: drawn(&drawing), patches })?;
+        let [parts, materials] = lines::lengths(&drawing).map_or([None, None], |l| l.map(Some));
+        print_json(&Report { lines: lines::drawn(&drawing), parts, materials, patches })?;
     }
     output.write(&picture)?;
     if args.output.is_none() {
@@ -156,7 +145,8 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
 /// The model in the pose that is asked for, and its patches if it comes with some. Those are of the mesh
 /// as it was read, any other that can move is drawn through its rig.
 fn load(args: &DrawArgs) -> Result<(Source, Option<PatchSet>), String> {
-    let (source, patches) = Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
+    let (source, patches) =
+        Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if patches.is_some() {
         args.animation.check_patches(&args.model)?;
         return Ok((source, patches));
@@ -213,14 +203,15 @@ pub(crate) fn chosen(args: &DrawArgs, patches: PatchSet) -> Result<PatchSet, Str
 
 /// What of a surface is the same from wherever it is looked at.
 pub(crate) struct Surface<'a> {
-    options: LineOptions<'static>,
+    lines: Lines,
     occluders: Occluders<'a>,
 }
 
 impl<'a> Surface<'a> {
     /// Finds it, without progress: maybe one of many.
     pub(crate) fn new(source: &'a Source, adjacency: &'a MeshAdjacency, args: &LineArgs) -> Self {
-        Self { options: options(args), occluders: Occluders::new(source.mesh(), adjacency) }
+        let lines = Lines::new(source, adjacency, args);
+        Self { lines, occluders: Occluders::new(source.mesh(), adjacency) }
     }
 }
 
@@ -241,16 +232,14 @@ impl Scene<'_> {
     ) -> Drawing {
         let Self { adjacency, camera, .. } = *self;
         let mesh = self.source.mesh();
-        let wanted = classes(args).contains(&Class::Contour);
+        let wanted = args.holds(LineClass::Contour);
         let contours = if wanted { self.contours(patches) } else { Vec::new() };
-        let Surface { options, occluders } = surface;
-        let segments = Segments::new(mesh, adjacency, &contours, options);
+        let Surface { lines, occluders } = surface;
+        let segments = Segments::new(mesh, adjacency, &contours, &lines.options(args));
         let params =
             VisibilityParams { drop_specks: args.specks.unwrap_or(SPECKS), ..Default::default() };
         let mut drawing = Drawing::new(occluders, &segments, camera, &params);
-        drawing
-            .layers
-            .retain(|layer| classes(args).iter().any(|&class| layer.class == class.into()));
+        lines.finish(&mut drawing, self.source, camera.viewpoint(), args);
         if let (Some(shown), Some(patches)) = (shown, patches) {
             drawing.areas = show::areas(patches, occluders, adjacency, camera, shown);
         }
@@ -271,33 +260,6 @@ impl Scene<'_> {
             None => contour_edges(mesh, self.adjacency, viewpoint, filter, &mut contours),
         }
         contours
-    }
-}
-
-fn classes(args: &LineArgs) -> &[Class] {
-    args.lines.as_deref().unwrap_or(CLASSES)
-}
-
-/// Refuses options of lines that make no sense.
-pub(crate) fn check(args: &LineArgs) -> Result<(), String> {
-    match args.crease_angle {
-        Some(angle) if !(0.0..=180.0).contains(&angle) => {
-            Err(format!("--crease-angle: {angle} is not within 0 and 180"))
-        }
-        Some(_) if !classes(args).contains(&Class::Crease) => {
-            Err("--crease-angle: no creases are drawn without --lines crease".to_owned())
-        }
-        _ => Ok(()),
-    }
-}
-
-fn options(args: &LineArgs) -> LineOptions<'static> {
-    let crease = classes(args).contains(&Class::Crease);
-    let least = args.crease_angle.unwrap_or(CREASE_ANGLE).to_radians();
-    LineOptions {
-        boundary: classes(args).contains(&Class::Boundary),
-        crease_angle: crease.then_some(least),
-        ..LineOptions::default()
     }
 }
 
@@ -357,14 +319,4 @@ fn format_of(path: &Path) -> Result<Format, String> {
         Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(Format::Png),
         _ => Err(format!("{}: a picture's name ends in .svg or .png", path.display())),
     }
-}
-
-fn drawn(drawing: &Drawing) -> BTreeMap<&'static str, Drawn> {
-    let count = |layer: &Layer| Drawn {
-        chains: layer.chains,
-        segments: layer.segments,
-        visible_length: layer.visible_length(),
-        hidden_length: layer.hidden_length(),
-    };
-    drawing.layers.iter().map(|layer| (layer.class.name(), count(layer))).collect()
 }

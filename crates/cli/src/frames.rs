@@ -199,7 +199,7 @@ struct Look {
 impl Look {
     fn new(args: &DrawArgs) -> Result<Self, String> {
         let style = draw::style(&args.lines)?;
-        draw::check(&args.lines)?;
+        args.lines.check()?;
         let shown = draw::shown(args)?;
         let plays = args.animation.animation.is_some() && args.animation.time.is_none();
         if shown.is_some() && plays {

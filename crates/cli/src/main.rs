@@ -9,6 +9,7 @@ mod frames;
 mod fusion;
 mod gpu;
 mod info;
+mod lines;
 mod memory;
 mod output;
 mod palette;

@@ -12,7 +12,8 @@ mod wgpu;
 
 use std::fmt;
 
-use crate::args::{Class, DrawArgs, DrawMethod, Hidden, Method, Show};
+use crate::args::{DrawArgs, DrawMethod, Method, Show};
+use crate::lines::{Class, Hidden};
 
 pub(crate) use frame::{draw, extract};
 

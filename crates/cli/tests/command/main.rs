@@ -11,6 +11,7 @@ mod frames;
 #[cfg(any(feature = "ash", feature = "wgpu"))]
 mod gpu;
 mod help;
+mod lines;
 mod islands;
 mod moving;
 mod options;

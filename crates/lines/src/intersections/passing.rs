@@ -28,7 +28,8 @@ impl<'a> Apexes<'a> {
         let mut around: HashMap<[u32; 2], Vec<u32>> = sides.map(|side| (side, vec![])).collect();
         if !around.is_empty() {
             for wing in adjacency.wings() {
-                if let Some(apexes) = around.get_mut(&wing.ends()) {
+                let [a, b] = wing.ends().map(|v| faces.welded(v));
+                if let Some(apexes) = around.get_mut(&[a.min(b), a.max(b)]) {
                     let found = [wing.left, wing.right].into_iter().filter(|&v| v != Wing::NONE);
                     apexes.extend(found);
                 }
