@@ -80,8 +80,8 @@ impl Folder {
         let others = self.frames().map_err(|error| self.fail(&error))?;
         if !overwrite && (note.exists() || !others.is_empty()) {
             return Err(format!(
-                "{}: holds frames of another model, or of other options; name another folder, or \
-                 replace them with --overwrite",
+                "{}: holds frames of another model, of other options, or of another version; name \
+                 another folder, or replace them with --overwrite",
                 self.name()
             ));
         }

@@ -107,7 +107,8 @@ struct Plan {
 pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
     let look = Look::new(args)?;
     let mut folder = Folder::check(folder)?;
-    let (source, loaded) = Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
+    let (source, loaded) =
+        Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if loaded.is_some() {
         args.animation.check_patches(&args.model)?;
     }
@@ -117,8 +118,7 @@ pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
     let cameras = match args.frames.turntable {
         Some(_) => {
             let turns: Vec<f64> = plan.frames.iter().map(|frame| frame.turn).collect();
-            let target = args.view.target.unwrap_or(center);
-            view::turntable(&args.view, target, &turns, |frame| {
+            view::turntable(&args.view, center, &turns, |frame| {
                 surfaces.mesh(plan.frames[frame].pose)
             })?
         }
@@ -299,7 +299,7 @@ impl Points for All<'_> {
     fn points(&self) -> impl Iterator<Item = DVec3> {
         let poses = 0..self.surfaces.poses.len().max(1);
         // One surface in memory at a time.
-        poses.flat_map(|pose| self.surfaces.mesh(pose).points().collect::<Vec<_>>())
+        poses.flat_map(|pose| view::corners(self.surfaces.mesh(pose)))
     }
 }
 

@@ -6,7 +6,6 @@ use clap::{Args, ValueEnum};
 use drypoint_lines::{Camera, CameraError, Page};
 use drypoint_mesh::Mesh;
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 use crate::args::{number, vector};
 
@@ -85,24 +84,21 @@ pub(crate) trait Points {
     fn points(&self) -> impl Iterator<Item = DVec3>;
 }
 
-impl Points for Cow<'_, Mesh> {
-    fn center(&self) -> DVec3 {
-        self.as_ref().center()
-    }
-
-    fn points(&self) -> impl Iterator<Item = DVec3> {
-        self.as_ref().points()
-    }
-}
-
 impl Points for Mesh {
     fn center(&self) -> DVec3 {
         self.bounds().map_or(DVec3::ZERO, |bounds| bounds.center())
     }
 
     fn points(&self) -> impl Iterator<Item = DVec3> {
-        self.triangles().iter().flatten().map(|&v| self.position(v).as_dvec3())
+        corners(Cow::Borrowed(self))
     }
+}
+
+/// The corners of all triangles: not vertices that none uses.
+pub(crate) fn corners(mesh: Cow<'_, Mesh>) -> impl Iterator<Item = DVec3> {
+    let count = 3 * mesh.triangles().len();
+    let corner = move |i: usize| mesh.position(mesh.triangles()[i / 3][i % 3]).as_dvec3();
+    (0..count).map(corner)
 }
 
 /// The camera that the options ask for.
@@ -138,50 +134,48 @@ fn refusal(error: CameraError) -> String {
     format!("{option}: {error}")
 }
 
-/// Cameras that look at `target` from all sides, one for each of `turns`, in degrees around the up axis
-/// from where the options look from. All are as far away as the one that needs most room for what it
-/// sees, `model` of its index, unless the options say how far.
-pub(crate) fn turntable<P: Points>(
+/// Cameras that go around the up axis through the target, one for each of `turns`, in degrees from where the
+/// options look from. What they see, `model` of its index, fits all of them at one distance.
+pub(crate) fn turntable<'a>(
     args: &ViewArgs,
-    target: DVec3,
+    center: DVec3,
     turns: &[f64],
-    model: impl Fn(usize) -> P + Sync,
+    model: impl Fn(usize) -> Cow<'a, Mesh>,
 ) -> Result<Vec<Camera>, String> {
-    let page = page(args)?;
-    let is_settled = if args.ortho { args.height } else { args.distance };
-    let mut views: Vec<ViewArgs> = turns.iter().map(|&turn| turned(args, target, turn)).collect();
-    if is_settled.is_none() && args.eye.is_none_or(|_| args.ortho) {
-        let room = |(index, view): (usize, &ViewArgs)| {
-            let camera = build(view, &model(index), page)?;
-            Ok(if args.ortho {
-                camera.pixel_size(target) * f64::from(page.height)
-            } else {
-                camera.viewpoint().xyz().distance(target)
-            })
-        };
-        let rooms: Result<Vec<f64>, _> = views.par_iter().enumerate().map(room).collect();
-        let most = rooms.map_err(refusal)?.into_iter().fold(0.0, f64::max);
-        for view in &mut views {
-            *(if args.ortho { &mut view.height } else { &mut view.distance }) = Some(most);
-        }
-    }
-    let nothing = Mesh::default();
-    views.iter().map(|view| build(view, &nothing, page).map_err(refusal)).collect()
-}
-
-/// The same view of `target`, turned around the up axis.
-fn turned(args: &ViewArgs, target: DVec3, degrees: f64) -> ViewArgs {
-    let view = ViewArgs { target: Some(target), ..args.clone() };
-    if let Some(eye) = args.eye {
-        let up = turn_to(args.up.and_then(DVec3::try_normalize).unwrap_or(DVec3::Y));
+    let axis = turn_to(args.up.and_then(DVec3::try_normalize).unwrap_or(DVec3::Y));
+    let turn = |degrees: f64| {
         let (sin, cos) = sin_cos(degrees);
         let around_y =
             DMat3::from_cols(DVec3::new(cos, 0.0, -sin), DVec3::Y, DVec3::new(sin, 0.0, cos));
-        let turn = up * around_y * up.transpose();
-        return ViewArgs { eye: Some(target + turn * (eye - target)), ..view };
+        axis * around_y * axis.transpose()
+    };
+    let turns: Vec<DMat3> = turns.iter().map(|&degrees| turn(degrees)).collect();
+    let about = args.target.unwrap_or(center);
+    let first = camera(args, &Turning { turns: &turns, about, center, model })?;
+    Ok(turns.iter().map(|&turn| first.turned(turn, about)).collect())
+}
+
+/// What a camera sees that stands still while all turns the other way.
+struct Turning<'a, F> {
+    turns: &'a [DMat3],
+    about: DVec3,
+    center: DVec3,
+    model: F,
+}
+
+impl<'m, F: Fn(usize) -> Cow<'m, Mesh>> Points for Turning<'_, F> {
+    fn center(&self) -> DVec3 {
+        self.center
     }
-    let (azimuth, elevation) = angles(args);
-    ViewArgs { view: None, azimuth: Some(azimuth + degrees), elevation: Some(elevation), ..view }
+
+    fn points(&self) -> impl Iterator<Item = DVec3> {
+        let about = self.about;
+        // One surface in memory at a time.
+        self.turns.iter().enumerate().flat_map(move |(index, turn)| {
+            let back = turn.transpose();
+            corners((self.model)(index)).map(move |point| about + back * (point - about))
+        })
+    }
 }
 
 fn build(args: &ViewArgs, model: &impl Points, page: Page) -> Result<Camera, CameraError> {
@@ -307,7 +301,9 @@ mod tests {
         let target = DVec3::new(1.0, 2.0, 3.0);
         let turns = [0.0, 90.0, 180.0, 270.0];
         let cube = drypoint_mesh::shapes::by_name("cube", 12).unwrap();
-        let mut command = crate::args::Cli::try_parse_from(["drypoint", "draw", "--view", "right"]);
+        let mut command = crate::args::Cli::try_parse_from([
+            "drypoint", "draw", "--view", "right", "--target", "1,2,3",
+        ]);
         let Ok(crate::args::Cli { command: crate::args::Command::Draw(args) }) = &mut command
         else {
             panic!("draw draws")

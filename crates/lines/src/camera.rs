@@ -1,7 +1,7 @@
 //! A viewpoint with a lens and a page: where a point of the model lands on paper.
 
 use drypoint_mesh::Viewpoint;
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use crate::{CameraError, Page};
 
@@ -111,6 +111,21 @@ impl Camera {
         }
         let viewpoint = Viewpoint::from_direction(towards_viewer);
         Ok(Self { viewpoint, origin: target, frame, scale, page })
+    }
+
+    /// The same camera, carried along as `rotation` turns space around the point `about`: what turns with it
+    /// stays where it is on the page.
+    pub fn turned(&self, rotation: DMat3, about: DVec3) -> Self {
+        let place = |point: DVec3| about + rotation * (point - about);
+        let Frame { right, up, back } = self.frame;
+        let [right, up, back] = [right, up, back].map(|axis| rotation * axis);
+        let viewpoint = if self.viewpoint.is_point() {
+            Viewpoint::at(place(self.viewpoint.xyz()))
+        } else {
+            Viewpoint::from_direction(rotation * self.viewpoint.xyz())
+        };
+        let (origin, frame) = (place(self.origin), Frame { right, up, back });
+        Self { viewpoint, origin, frame, ..*self }
     }
 
     /// The eye as it was given, or the direction towards the viewer.
@@ -304,6 +319,23 @@ mod tests {
         assert_eq!(camera.viewpoint(), Viewpoint::at(eye));
         let camera = Camera::orthographic(eye, DVec3::ONE, None, 1.0, PAGE).unwrap();
         assert_eq!(camera.viewpoint(), Viewpoint::from_direction(eye));
+    }
+
+    #[test]
+    fn what_turns_with_the_camera_stays_on_the_page() {
+        let (about, point) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.25, -0.5, -0.125));
+        let turn = DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 2.0);
+        let flat = Camera::orthographic(DVec3::ONE, DVec3::X, None, 2.0, PAGE).unwrap();
+        for camera in [ahead(), flat] {
+            let turned = camera.turned(turn, about);
+            let [before, after] = [
+                camera.project(point).unwrap(),
+                turned.project(about + turn * (point - about)).unwrap(),
+            ];
+            assert!(before.distance(after) < 1e-9, "{before} is not {after}");
+            assert_eq!(turned.viewpoint().is_point(), camera.viewpoint().is_point());
+            assert!(turned.viewpoint().xyz().distance(camera.viewpoint().xyz()) > 0.5);
+        }
     }
 
     #[track_caller]

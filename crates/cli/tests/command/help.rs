@@ -14,6 +14,10 @@ fn help_has_examples() {
         ("patches", &["--levels", "--partition", "super_patches", "peak_memory"]),
         ("draw", &["--show", "survivors", "--model", "--preset", "--method", "wgpu", "ash"]),
         ("draw", &["--method ash", "wgpu or ash", "Vulkan 1.3"]),
+        ("draw", &["--animation", "--frames", "--animation-frames", "--turntable", "frames.json"]),
+        ("info", &["rigid_share", "animations"]),
+        ("patches", &["rest pose", "extract --animation"]),
+        ("extract", &["--animation", "--time"]),
         (
             "extract",
             &["super_patches_tested", "--runtime", ".patches", "wgpu", "ash", "Vulkan 1.3"],
