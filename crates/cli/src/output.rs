@@ -6,6 +6,8 @@ use std::sync::{Mutex, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
+use crate::progress::Stage;
+
 /// What a shell reports for a program that Ctrl-C ended: 128 + SIGINT.
 const INTERRUPTED: i32 = 130;
 
@@ -82,7 +84,10 @@ impl Output {
                 .open(path)
                 .and_then(|mut stream| stream.write_all(bytes))
                 .map_err(|error| cannot_write(path, &error)),
-            Self::File(path) => replace(path, bytes).map_err(|error| cannot_write(path, &error)),
+            Self::File(path) => {
+                let _stage = Stage::new(&format!("writing {}", path.display()));
+                replace(path, bytes).map_err(|error| cannot_write(path, &error))
+            }
         }
     }
 }

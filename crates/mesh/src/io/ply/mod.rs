@@ -1,7 +1,7 @@
 //! Stanford PLY, ascii and binary of both endiannesses.
 //!
 //! Greg Turk, The PLY Polygon File Format, 1994. Read here rather than by a crate: `ply-rs-bw`, at
-//! 4.0, keeps a hash map for every row and takes about five times as long on the Stanford dragon.
+//! 4.0, keeps a hash map for every row, or takes some three times as long into structs.
 //!
 //! Read are `x`, `y` and `z` of the element `vertex`; lists `vertex_indices` or `vertex_index` of
 //! `face`; and of `tristrips`, where −1 ends a strip and every second triangle is turned, as in the
