@@ -170,10 +170,10 @@ fn pairs_of_triangles() -> Rig {
     builder.finish()
 }
 
-/// At rest, turned, mirrored here and there, and with carriers that are flattened to a plane, a line and a point.
+/// At rest, turned, mirrored here and there, flattened to planes, and to lines and points.
 pub(crate) fn poses(rig: &Rig, rng: &mut Rng) -> Vec<Pose> {
     let mut poses = vec![rig.rest()];
-    for kind in 0..4 {
+    for kind in 0..5 {
         let mut pose = rig.rest();
         for to_scene in &mut pose.to_scene {
             let mut number = |most: f64| most * (2.0 * rng.f64() - 1.0);
@@ -183,10 +183,8 @@ pub(crate) fn poses(rig: &Rig, rng: &mut Rng) -> Vec<Pose> {
             let mut scale = DVec3::ONE + 0.3 * DVec3::new(number(1.0), number(1.0), number(1.0));
             match kind {
                 2 if rng.bool() => scale.x = -scale.x,
-                3 => {
-                    let lost = rng.usize(0..4);
-                    (0..lost).for_each(|axis| scale[axis] = 0.0);
-                }
+                3 => scale[rng.usize(0..3)] = 0.0,
+                4 => (0..rng.usize(0..4)).for_each(|axis| scale[axis] = 0.0),
                 _ => {}
             }
             *to_scene = DAffine3::from_scale_rotation_translation(scale, turn, moved);
