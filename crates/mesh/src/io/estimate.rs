@@ -89,14 +89,18 @@ fn by_lines(
     let places =
         if bytes <= SAMPLES * SAMPLE as u64 { bytes.div_ceil(SAMPLE as u64) } else { SAMPLES };
     for place in 0..places {
-        let text = sample(file, bytes / places * place)?;
+        let from = bytes / places * place;
+        let text = sample(file, from)?;
         let mut lines = Lines::new(&text);
-        // But for the first sample, the first line is likely to be the end of one.
+        // But for the first sample, the first line is likely to be the end of one; the last line the
+        // beginning of one, but at the end of the file.
         if place > 0 {
             lines.next_line();
         }
         let whole = lines.rest();
-        let end = whole.iter().rposition(|&byte| byte == b'\n').map_or(whole.len(), |end| end + 1);
+        let is_last = from + text.len() as u64 >= bytes;
+        let end = whole.iter().rposition(|&byte| byte == b'\n').filter(|_| !is_last);
+        let end = end.map_or(whole.len(), |end| end + 1);
         let mut lines = Lines::new(&whole[..end]);
         while let Some(line) = lines.next_line() {
             let more = of_line(line);
