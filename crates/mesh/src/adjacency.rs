@@ -1,11 +1,16 @@
 //! From triangles to edges.
 
+use rayon::prelude::*;
+
 use crate::classes::{interior_class, is_fold};
 use crate::{EdgeClass, EdgeFilter, EdgeId, HalfEdge, Mesh, Wing, has_area, weld_by_position};
 
 /// At an edge of very many faces each is paired with this many others, so that hostile input costs
 /// linear memory. Up to 16 faces that is every pair.
 const MAX_PAIRED: usize = 15;
+
+/// Edges that a thread classifies at once.
+const SHARE: usize = 1 << 14;
 
 /// The edges of a mesh, each with the faces on both sides.
 ///
@@ -61,7 +66,8 @@ pub struct TopologyReport {
 }
 
 impl MeshAdjacency {
-    /// Pairs the half-edges of `mesh`. Linear but for one sort of the edges.
+    /// Pairs the half-edges of `mesh`. Linear but for one sort of the edges, on
+    /// all threads but for two passes over the triangles.
     pub fn new(mesh: &Mesh) -> Self {
         Self::welded(mesh, weld_by_position(mesh.positions()))
     }
@@ -79,16 +85,9 @@ impl MeshAdjacency {
             "a representative stands for itself"
         );
         let without_area: Vec<bool> =
-            mesh.triangles().iter().map(|t| !has_area(t.map(|v| mesh.position(v)))).collect();
+            mesh.triangles().par_iter().map(|t| !has_area(t.map(|v| mesh.position(v)))).collect();
         let welded = Welded { mesh, representatives: &representatives };
-        let mut half_edges = welded.half_edges_by_edge();
-        let mut sides = Vec::with_capacity(half_edges.len() / 2);
-        for edge in half_edges.chunk_by_mut(|a, b| a.ends == b.ends) {
-            edge.sort_unstable_by_key(|half| half.id);
-            pair(edge, &mut sides);
-        }
-        sides.sort_unstable_by_key(|side| side.half_edges);
-
+        let sides = welded.sides();
         let mut adjacency = Self {
             report: TopologyReport {
                 faces: mesh.triangles().len(),
@@ -108,27 +107,17 @@ impl MeshAdjacency {
             drawable: Vec::with_capacity(sides.len()),
             ..Default::default()
         };
-        for side in &sides {
-            let wing = welded.wing(side.half_edges);
-            let [left, right] = side.half_edges;
-            let turned = right != HalfEdge::NONE && welded.start(left) == welded.start(right);
-            let class = match side.face_count {
-                1 => EdgeClass::Boundary,
-                2 if turned => EdgeClass::Inconsistent,
-                2 => interior_class(mesh, &wing),
-                _ => EdgeClass::NonManifold,
-            };
-            let drawable = match class {
-                EdgeClass::Boundary | EdgeClass::Concave => false,
-                EdgeClass::Convex | EdgeClass::NonManifold | EdgeClass::Inconsistent => true,
-                EdgeClass::Flat => is_fold(mesh, &wing),
-            };
-            adjacency.report.count(class, side.first_of_edge);
-            adjacency.wings.push(wing);
+        let shares: Vec<Vec<Kept>> = sides
+            .par_chunks(SHARE)
+            .map(|sides| sides.iter().map(|side| welded.kept(side)).collect())
+            .collect();
+        for (side, kept) in sides.iter().zip(shares.iter().flatten()) {
+            adjacency.report.count(kept.class, side.first_of_edge);
+            adjacency.wings.push(kept.wing);
             adjacency.sides.push(side.half_edges);
-            adjacency.classes.push(class);
-            adjacency.turned.push(turned);
-            adjacency.drawable.push(drawable);
+            adjacency.classes.push(kept.class);
+            adjacency.turned.push(kept.turned);
+            adjacency.drawable.push(kept.drawable);
         }
         Self { representatives, without_area, ..adjacency }
     }
@@ -237,6 +226,14 @@ struct Side {
     first_of_edge: bool,
 }
 
+/// What is found out of a side.
+struct Kept {
+    wing: Wing,
+    class: EdgeClass,
+    turned: bool,
+    drawable: bool,
+}
+
 /// Appends the wings of one edge, given its half-edges by id.
 fn pair(edge: &[Keyed], sides: &mut Vec<Side>) {
     let face_count = edge.len();
@@ -294,10 +291,38 @@ impl Welded<'_> {
             buckets[*slot] = half;
             *slot += 1;
         }
-        for bucket in buckets.chunk_by_mut(|a, b| a.ends[0] == b.ends[0]) {
-            bucket.sort_unstable_by_key(|half| (half.ends[1], half.id));
-        }
         buckets
+            .par_chunk_by_mut(|a, b| a.ends[0] == b.ends[0])
+            .for_each(|bucket| bucket.sort_unstable_by_key(|half| (half.ends[1], half.id)));
+        buckets
+    }
+
+    /// The wings of all edges, in their order.
+    fn sides(&self) -> Vec<Side> {
+        let half_edges = self.half_edges_by_edge();
+        let mut sides = Vec::with_capacity(half_edges.len() / 2);
+        half_edges.chunk_by(|a, b| a.ends == b.ends).for_each(|edge| pair(edge, &mut sides));
+        drop(half_edges);
+        sides.par_sort_unstable_by_key(|side| side.half_edges);
+        sides
+    }
+
+    fn kept(&self, side: &Side) -> Kept {
+        let wing = self.wing(side.half_edges);
+        let [left, right] = side.half_edges;
+        let turned = right != HalfEdge::NONE && self.start(left) == self.start(right);
+        let class = match side.face_count {
+            1 => EdgeClass::Boundary,
+            2 if turned => EdgeClass::Inconsistent,
+            2 => interior_class(self.mesh, &wing),
+            _ => EdgeClass::NonManifold,
+        };
+        let drawable = match class {
+            EdgeClass::Boundary | EdgeClass::Concave => false,
+            EdgeClass::Convex | EdgeClass::NonManifold | EdgeClass::Inconsistent => true,
+            EdgeClass::Flat => is_fold(self.mesh, &wing),
+        };
+        Kept { wing, class, turned, drawable }
     }
 
     fn wing(&self, [left, right]: [HalfEdge; 2]) -> Wing {

@@ -1,21 +1,58 @@
 //! Vertices at equal positions are one vertex.
 
-use glam::Vec3;
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher;
+use std::sync::atomic::{AtomicU32, Ordering};
 
-/// For each vertex the lowest index of a vertex at the same position. Linear.
+use glam::Vec3;
+use rayon::prelude::*;
+use rustc_hash::{FxBuildHasher, FxHashMap};
+
+/// Maps that vertices are shared out to. Each of a million vertices fits a processor's cache, and is four
+/// times as fast for it as one of all.
+const SHARDS: usize = 64;
+
+/// Vertices that a thread shares out at once. Fewer in all are not worth sharing out.
+const SHARE: usize = 1 << 14;
+
+/// For each vertex the lowest index of a vertex at the same position. Linear, on all threads.
 ///
 /// OBJ and glTF files split vertices where texture coordinates or normals jump, and STL files at
 /// every triangle; the surface does not end there. Positions are compared exactly, and −0 equals 0.
 pub fn weld_by_position(positions: &[Vec3]) -> Vec<u32> {
-    let mut first_at: FxHashMap<[u32; 3], u32> =
-        FxHashMap::with_capacity_and_hasher(positions.len(), Default::default());
-    let weld = |(index, position): (u32, &Vec3)| {
-        // Adding 0 turns −0 into 0.
-        let key = position.to_array().map(|x| (x + 0.0).to_bits());
-        *first_at.entry(key).or_insert(index)
-    };
-    (0..).zip(positions).map(weld).collect()
+    in_shares(positions, SHARE)
+}
+
+fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
+    // Adding 0 turns −0 into 0.
+    let key = |position: &Vec3| position.to_array().map(|x| (x + 0.0).to_bits());
+    if positions.len() <= share {
+        let mut first_at = FxHashMap::with_capacity_and_hasher(positions.len(), FxBuildHasher);
+        let weld = |(index, position)| *first_at.entry(key(position)).or_insert(index);
+        return (0..).zip(positions).map(weld).collect();
+    }
+    let starts = (0..positions.len()).into_par_iter().step_by(share);
+    let shared_out: Vec<Vec<Vec<u32>>> = starts
+        .map(|start| {
+            let mut lists = vec![Vec::new(); SHARDS];
+            let end = positions.len().min(start + share);
+            for (index, position) in (start..end).zip(&positions[start..end]) {
+                let hash = FxBuildHasher.hash_one(key(position)).to_le_bytes();
+                let index = u32::try_from(index).unwrap_or(u32::MAX);
+                lists[usize::from(hash[4]) % SHARDS].push(index);
+            }
+            lists
+        })
+        .collect();
+    let welded: Vec<AtomicU32> = positions.par_iter().map(|_| AtomicU32::new(0)).collect();
+    (0..SHARDS).into_par_iter().for_each(|shard| {
+        let mut first_at = FxHashMap::default();
+        // In order, so that the first is the lowest.
+        for &index in shared_out.iter().flat_map(|lists| &lists[shard]) {
+            let first = *first_at.entry(key(&positions[index as usize])).or_insert(index);
+            welded[index as usize].store(first, Ordering::Relaxed);
+        }
+    });
+    welded.into_par_iter().map(AtomicU32::into_inner).collect()
 }
 
 #[cfg(test)]
@@ -30,5 +67,22 @@ mod tests {
             [0, 1, 0, 1, 4]
         );
         assert!(weld_by_position(&[]).is_empty());
+    }
+
+    #[test]
+    fn shares_of_any_size_weld_the_same() {
+        let mut random = 7u32;
+        let positions: Vec<Vec3> = (0..5000)
+            .map(|_| {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let [_, _, a, b] = random.to_le_bytes();
+                Vec3::new(f32::from(a % 16), -f32::from(b % 8), 0.0)
+            })
+            .collect();
+        let whole = in_shares(&positions, positions.len());
+        assert!(whole.iter().zip(0..).any(|(&first, index)| first < index));
+        for share in [1, 7, 1000, 4999] {
+            assert_eq!(in_shares(&positions, share), whole, "{share}");
+        }
     }
 }
