@@ -5,8 +5,8 @@
 use std::f64::consts::TAU;
 
 use drypoint_lines::{
-    Camera, Chain, Drawing, Intersections, LineClass, LineOptions, Occluders, Page, Segments,
-    VisibilityParams, chain,
+    Camera, Chain, Drawing, FaceNames, Intersections, LineClass, LineOptions, Occluders, Page,
+    Segments, VisibilityParams, chain,
 };
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, contour_edges, io, shapes};
 use glam::{DQuat, DVec3, Vec3};
@@ -145,10 +145,9 @@ fn what_passes_through_has_a_line() {
     check("sheets as large as each other", &cross, 1, false, 10.0);
 }
 
-/// Edges of one surface, or of both, lie exactly in the other.
-#[test]
-fn what_passes_through_along_its_edges_has_a_line() {
-    let ring = 24u16;
+/// Faces around the z axis, of `ring` sides, with a row of edges in the plane z = 0. Those below it come
+/// first.
+fn tube(ring: u16) -> Mesh {
     let around = |i: u16, z: f64| {
         let angle = TAU * f64::from(i % ring) / f64::from(ring);
         DVec3::new(angle.cos(), angle.sin(), z).as_vec3()
@@ -159,9 +158,15 @@ fn what_passes_through_along_its_edges_has_a_line() {
     let row = u32::from(ring);
     let quads = (0..2).flat_map(|y| (0..row).map(move |x| [y * row + x, y * row + (x + 1) % row]));
     let triangles = quads.flat_map(|[a, b]| [[a, b, b + row], [a, b + row, a + row]]).collect();
-    let tube = Mesh::new(positions, triangles).unwrap();
+    Mesh::new(positions, triangles).unwrap()
+}
+
+/// Edges of one surface, or of both, lie exactly in the other.
+#[test]
+fn what_passes_through_along_its_edges_has_a_line() {
+    let ring = 24;
     let circumference = f64::from(ring) * 2.0 * (TAU / f64::from(ring) / 2.0).sin();
-    let cut = together(&[floor(5.0), tube.clone()]);
+    let cut = together(&[floor(5.0), tube(ring)]);
     check("a tube in a floor", &cut, 1, true, circumference);
     // Two bent sheets with an edge on one line, cut at other places.
     let bent = |side: DVec3, at: [f64; 3]| {
@@ -181,6 +186,24 @@ fn what_passes_through_along_its_edges_has_a_line() {
     check("a roof under a gutter", &together(&[roof.clone(), gutter]), 0, true, 0.0);
     let upright = moved(&roof, |p| DVec3::new(1.1 * p.x - 0.3, p.z + 0.5 * p.y, 2.0 * p.y));
     check("sheets through each other's bend", &together(&[roof, upright]), 1, false, 1.9);
+}
+
+/// Where surfaces cross along an edge that is drawn anyway, that is all there is.
+#[test]
+fn a_line_along_a_drawn_edge_is_drawn_once() {
+    let mesh = together(&[tube(24), floor(5.0)]);
+    let adjacency = MeshAdjacency::new(&mesh);
+    let intersections = Intersections::new(&mesh, &adjacency);
+    // The diagonal of the floor may cut two of them.
+    assert!((24..=26).contains(&intersections.len()));
+    let below = FaceNames::new([("below", 0..48)]);
+    let options = LineOptions { intersections: Some(&intersections), ..Default::default() };
+    let count = |options| {
+        let segments = Segments::new(&mesh, &adjacency, &[], &options);
+        [LineClass::Material, LineClass::Intersection].map(|class| segments.of(class).len())
+    };
+    assert_eq!(count(options), [0, intersections.len()]);
+    assert_eq!(count(LineOptions { materials: Some(&below), ..options }), [24, 0]);
 }
 
 #[test]

@@ -44,6 +44,10 @@ struct Piece {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    not(feature = "visibility"),
+    expect(dead_code, reason = "without it nothing finds intersections, and there are none")
+)]
 enum End {
     /// A welded vertex of the mesh.
     Vertex(u32),
