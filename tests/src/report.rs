@@ -44,6 +44,44 @@ pub struct Report {
     /// Which GPU frames were drawn on in Vulkan, if there was one.
     #[serde(default)]
     pub vulkan: Option<GpuRun>,
+    /// What reading files takes, if that was measured.
+    #[serde(default)]
+    pub reading: Option<Reading>,
+}
+
+/// What reading files takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reading {
+    /// Where.
+    pub machine: Machine,
+    /// How.
+    pub run: Run,
+    /// In the order in which they were read.
+    pub files: Vec<FileRead>,
+}
+
+/// What reading a file takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FileRead {
+    /// Its name, and what it is.
+    pub name: String,
+    /// Its size.
+    pub bytes: u64,
+    /// Triangles in it.
+    pub faces: usize,
+    /// Readers that read the same from it, ours first.
+    pub readers: Vec<ReaderTime>,
+}
+
+/// What a reader takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReaderTime {
+    /// Which.
+    pub name: String,
+    /// Median over rounds.
+    pub seconds: f64,
+    /// How many times as long as ours, round by round.
+    pub over_ours: Quartiles,
 }
 
 /// Where a benchmark ran.
@@ -281,6 +319,11 @@ impl Report {
     pub fn is_on_gpu_alone(&self) -> bool {
         let is_empty = |mesh: &MeshReport| mesh.decompositions.is_empty() && mesh.times.is_empty();
         (self.gpu.is_some() || self.vulkan.is_some()) && self.meshes.iter().all(is_empty)
+    }
+
+    /// Whether nothing was measured but how files are read.
+    pub fn is_of_readers_alone(&self) -> bool {
+        self.reading.is_some() && self.meshes.is_empty()
     }
 
     /// What was measured on a GPU replaced by that of `other`, as far as `other` has any: what it measured with

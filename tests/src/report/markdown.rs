@@ -8,24 +8,24 @@ use super::{GpuRun, Report, Run, claims, tables};
 const START: &str = "<!-- measured: ";
 const END: &str = "<!-- end -->";
 
-/// What belongs between marks, by name: a table for each of [`tables`], `machine`, `claims`, and `gpu`
-/// and `vulkan` if there were such.
+/// What belongs between marks, by name: a table for each of [`tables`], `machine`, `claims`, and
+/// `reading`, `gpu` and `vulkan` if there were such.
 pub fn blocks(report: &Report) -> Vec<(String, String)> {
     let mut blocks: Vec<(String, String)> =
         tables(report).iter().map(|table| (table.name.clone(), markdown(table))).collect();
-    let machine = &report.machine;
-    blocks.push((
-        "machine".to_owned(),
-        format!(
+    let reading = report.reading.iter().map(|r| ("reading", &r.machine, &r.run));
+    for (name, machine, run) in reading.chain([("machine", &report.machine, &report.run)]) {
+        let text = format!(
             "{}, {} threads, {} kernels, {:.0} GB, {}; {}\n",
             machine.processor,
             machine.threads,
             machine.instructions,
             machine.memory,
             machine.system,
-            of_run(&report.run),
-        ),
-    ));
+            of_run(run),
+        );
+        blocks.push((name.to_owned(), text));
+    }
     for (name, gpu) in [("gpu", &report.gpu), ("vulkan", &report.vulkan)] {
         blocks.extend(
             gpu.iter()

@@ -173,6 +173,7 @@ mod tests {
             }],
             gpu: None,
             vulkan: None,
+            reading: None,
         }
     }
 

@@ -2,7 +2,10 @@
 
 use super::claims::{FAST, OURS};
 use super::paper::FIGURES;
-use super::{Calibration, Decomposition, MeshReport, Partition, Quartiles, Report, gpu_tables};
+use super::{
+    Calibration, Decomposition, FileRead, MeshReport, Partition, Quartiles, ReaderTime, Report,
+    gpu_tables,
+};
 
 /// A table of text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +28,7 @@ pub struct Table {
 pub fn tables(report: &Report) -> Vec<Table> {
     let of_meshes =
         report.meshes.iter().flat_map(|mesh| of_mesh(mesh).chain(gpu_tables::tables(report, mesh)));
-    let tables = [headline(report)].into_iter().chain(of_meshes);
+    let tables = [headline(report), readers(report)].into_iter().chain(of_meshes);
     tables.filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -67,6 +70,36 @@ fn headline(report: &Report) -> Table {
             "`DEFAULT`",
         ],
         rows: report.meshes.iter().filter_map(row).collect(),
+    }
+}
+
+/// A row for each file and each reader that reads the same from it.
+fn readers(report: &Report) -> Table {
+    let of_file = |file: &FileRead| {
+        let megabytes = file.bytes as f64 / 1e6;
+        let row = |reader: &ReaderTime| {
+            vec![
+                file.name.clone(),
+                format!("{megabytes:.1}"),
+                count(file.faces as f64),
+                reader.name.clone(),
+                format!("{:.1} ms", 1e3 * reader.seconds),
+                count(megabytes / reader.seconds),
+                format!("{:.1} ×", reader.over_ours.median),
+            ]
+        };
+        file.readers.iter().map(row).collect::<Vec<_>>()
+    };
+    let files = report.reading.iter().flat_map(|reading| &reading.files);
+    Table {
+        mesh: None,
+        name: "readers".to_owned(),
+        title: "Reading files".to_owned(),
+        note: "Median of rounds, each reader in turn, from the system's cache to positions and triangles, on \
+               all threads where a reader uses them. Readers that refuse a file, or find other triangles in \
+               it, are left out.",
+        head: vec!["file", "MB", "triangles", "reader", "time", "MB/s", "as long as ours"],
+        rows: files.flat_map(of_file).collect(),
     }
 }
 

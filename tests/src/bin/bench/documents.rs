@@ -11,8 +11,9 @@ use crate::{Options, Section, name, read, write};
 pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> Result<(), String> {
     let documents = documents(repository)?;
     let [has_gpu, has_vulkan] = gpu_alone(options);
-    if options.quick || !(options.only.is_empty() || has_gpu || has_vulkan) {
-        let sections = "no --only but vulkan, or gpu and gpu-calibration, both of them";
+    let has_readers = options.only == [Section::Readers];
+    if options.quick || !(options.only.is_empty() || has_gpu || has_vulkan || has_readers) {
+        let sections = "no --only but readers, vulkan, or gpu and gpu-calibration, both of them";
         return Err(format!("--docs takes a whole run: no --quick, and {sections}"));
     }
     let meshes: Vec<String> = files.iter().map(|path| name(path)).collect();
@@ -24,7 +25,7 @@ pub(crate) fn check(repository: &Path, options: &Options, files: &[PathBuf]) -> 
             // The rest stays as it is.
             let is_measured =
                 has_gpu && mark.contains("-gpu") || has_vulkan && mark.ends_with("-vulkan");
-            let is_kept = (has_gpu || has_vulkan) && !is_measured;
+            let is_kept = has_readers || (has_gpu || has_vulkan) && !is_measured;
             is_kept || !mark.contains('-') || meshes.iter().any(is_of)
         };
         if let Some(mark) = marks(text).find(|mark| !is_filled(mark)) {
@@ -51,15 +52,24 @@ fn gpu_alone(options: &Options) -> [bool; 2] {
 /// the rest where only one of both was measured now, and the other is kept.
 pub(crate) fn update(repository: &Path, report: Report) -> Result<(), String> {
     let kept = read(&repository.join(SUMMARY));
+    if report.is_of_readers_alone() {
+        return write_all(repository, &Report { reading: report.reading, ..kept? });
+    }
+    let reading = kept.as_ref().ok().and_then(|kept| kept.reading.clone());
+    let report = Report { reading: report.reading.clone().or(reading), ..report };
     let report = match (report.is_on_gpu_alone(), kept) {
         (true, kept) => kept?.with_gpu_of(&report),
         // What was measured now comes last.
         (false, Ok(kept)) => report.clone().with_gpu_of(&kept).with_gpu_of(&report),
         (false, Err(_)) => report,
     };
-    let report = report.summary();
-    let json = serde_json::to_string_pretty(&report).map_err(|error| error.to_string())?;
-    let blocks = blocks(&report);
+    write_all(repository, &report.summary())
+}
+
+/// Writes a summary, and the marked tables of all documents.
+fn write_all(repository: &Path, report: &Report) -> Result<(), String> {
+    let json = serde_json::to_string_pretty(report).map_err(|error| error.to_string())?;
+    let blocks = blocks(report);
     let mut written = vec![(repository.join(SUMMARY), json + "\n")];
     for (path, text) in documents(repository)? {
         let text =

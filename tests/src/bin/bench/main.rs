@@ -11,6 +11,7 @@ mod gpu;
 mod kept;
 mod machine;
 mod measure;
+mod readers;
 mod vulkan;
 
 use std::fs;
@@ -47,7 +48,8 @@ struct Options {
     fresh: bool,
     /// Also write what was measured to docs/measurements.json of this repository, and into the
     /// marked tables of its documents, all of whose meshes must be given. With --only gpu and --only
-    /// gpu-calibration, or with --only vulkan, or for the report of such a run, the rest stays as it is
+    /// gpu-calibration, with --only vulkan or with --only readers, or for the report of such a run, the
+    /// rest stays as it is
     #[arg(long, value_name = "REPOSITORY")]
     docs: Option<PathBuf>,
     /// Measure nothing: make the page and the tables from a report.json, or from the repository's
@@ -78,6 +80,8 @@ enum Section {
     GpuCalibration,
     /// Frames in Vulkan, by task and mesh shaders and by compute shaders
     Vulkan,
+    /// Reading files, beside other readers
+    Readers,
 }
 
 impl Options {
@@ -118,21 +122,24 @@ fn run(options: &Options) -> Result<(), String> {
     let kept = Kept::new(options)?;
     let devices = Devices { gpu: gpu::device(options)?, vulkan: vulkan::device(options)? };
     let mut meshes = Vec::new();
-    for path in &files {
+    // Readers need no mesh but in files.
+    let is_of_readers_alone = options.only == [Section::Readers];
+    for path in files.iter().filter(|_| !is_of_readers_alone) {
         let model = io::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
         meshes.push(measure::mesh(&name(path), &model.mesh, options, (&kept, &devices))?);
     }
-    if files.is_empty() {
+    if files.is_empty() && !is_of_readers_alone {
         for name in ["bumpy-sphere", "torus-knot", "cad-part"] {
             let mesh = shapes::by_name(name, SHAPE_FACES).ok_or(format!("no shape {name}"))?;
             meshes.push(measure::mesh(name, &mesh, options, (&kept, &devices))?);
         }
     }
+    let reading = readers::measure(&kept, options, &files)?;
     kept.finish();
     let run = machine::run(options);
     let gpu = devices.gpu.map(|gpu| gpu::run(&gpu, run.clone()));
     let vulkan = devices.vulkan.map(|gpu| vulkan::run(&gpu, run.clone()));
-    finish(options, &Report { machine: machine::machine(), run, meshes, gpu, vulkan })
+    finish(options, &Report { machine: machine::machine(), run, meshes, gpu, vulkan, reading })
 }
 
 /// GPUs that are wanted and there.
