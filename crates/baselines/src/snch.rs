@@ -12,16 +12,15 @@
 //! number of the one that follows if it is culled, so that no stack is needed.
 
 use std::ops::Range;
-use std::time::Duration;
 
 use drypoint_bounds::DoubleCone;
 use drypoint_mesh::{EdgeFilter, EdgeId, Mesh, MeshAdjacency, Viewpoint};
 use glam::Vec3A;
-use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
-use obvhs::ploc::PlocSearchDistance;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH};
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 use crate::Statistics;
 use crate::edges::Edges;
@@ -140,17 +139,22 @@ fn hierarchy(mesh: &Mesh, edges: &Edges<'_>, places: &[u32], params: &SnchParams
         .map(|&place| edges.wings()[place as usize].ends().map(position))
         .map(|[a, b]| Aabb::new(a.min(b), a.max(b)))
         .collect();
-    let params = BvhBuildParams {
-        // Its best preset, with nothing split and the widest search.
-        pre_split: false,
-        ploc_search_distance: PlocSearchDistance::VeryHigh,
-        search_depth_threshold: 0,
-        max_prims_per_leaf: params.edges_per_leaf.clamp(1, 255),
-        collapse_traversal_cost: STEP_COST,
-        ..BvhBuildParams::very_slow_build()
-    };
-    let mut unread = Duration::ZERO;
-    build_bvh2(&boxes, params, &mut unread)
+    // What its best preset does, with nothing split and the widest search.
+    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
+        PlocSearchDistance::VeryHigh,
+        &boxes,
+        (0..count(boxes.len())).collect(),
+        SortPrecision::U128,
+        0,
+    );
+    // Reinsertion looks for places with a stack of twice this, and forgets some where the tree is
+    // deeper, as among boxes that coincide; a deeper stack would panic if the tree grew beyond it.
+    bvh.max_depth = DEFAULT_MAX_STACK_DEPTH;
+    let mut reinsertion = ReinsertionOptimizer::default();
+    reinsertion.run(&mut bvh, 1.0, None);
+    collapse(&mut bvh, params.edges_per_leaf.clamp(1, 255), STEP_COST);
+    reinsertion.run(&mut bvh, 1.0, None);
+    bvh
 }
 
 /// The nodes of `bvh` in the order of the traversal, and its primitives in that of the leaves.
@@ -268,6 +272,15 @@ mod tests {
             let statistics = snch.extract(far, &mut contours);
             assert!(statistics.edges_tested < snch.edges() / share, "{statistics:?}");
             assert!(statistics.nodes_tested < snch.nodes() / 4, "{statistics:?}");
+        }
+    }
+
+    /// The hierarchy is deeper than that of any model, one edge a level.
+    #[test]
+    fn faces_that_lie_upon_each_other_by_the_dozen() {
+        let mesh = shapes::stack(48);
+        for filter in FILTERS {
+            check(&mesh, filter, 1);
         }
     }
 

@@ -166,6 +166,32 @@ fn dirty_shapes_are_as_dirty_as_they_say() {
 }
 
 #[test]
+fn what_exports_leave_behind_is_there() {
+    let far = report(&shapes::far_sphere(1280));
+    assert!(
+        far.collapsed > 20 && far.degenerate > far.collapsed && far.non_manifold > 0,
+        "{far:?}"
+    );
+    let littered = report(&shapes::littered_sphere(320));
+    let used: std::collections::BTreeSet<_> =
+        shapes::littered_sphere(320).triangles().iter().flatten().copied().collect();
+    assert!(used.len() * 4 < littered.vertices * 3, "{littered:?}");
+    assert!(littered.welded_vertices < littered.vertices, "{littered:?}");
+    assert_eq!((littered.interior, littered.boundary, littered.non_manifold), (480, 0, 0));
+    let junctions = report(&shapes::t_junctions(84));
+    assert_eq!((junctions.faces, junctions.inconsistent, junctions.degenerate), (84, 0, 0));
+    assert_eq!(junctions.boundary, 2 * 4 * (1 + 2 + 4), "{junctions:?}");
+    assert!((volume(&shapes::t_junctions(84)) - 6.0 * 8.0).abs() < 1e-9);
+    check_closed("flipped-shells", &shapes::flipped_shells(240), -2);
+    check_closed("sliver-fan", &shapes::sliver_fan(500), 0);
+    let thicket = report(&shapes::zero_area_thicket(1200));
+    assert!(thicket.degenerate >= 1200 && thicket.faces == thicket.degenerate + 4, "{thicket:?}");
+    let stack = report(&shapes::stack(20));
+    assert_eq!((stack.non_manifold, stack.faces, stack.degenerate), (3, 20, 0));
+    check_closed("mixed-units", &shapes::mixed_units(240), -2);
+}
+
+#[test]
 fn shapes_come_near_to_the_count_and_are_the_same_every_time() {
     for &name in shapes::NAMES {
         let count = |wish| shapes::by_name(name, wish).unwrap().triangles().len();
@@ -196,5 +222,6 @@ fn all_shapes_are_small_and_have_names_of_their_own() {
     let extent =
         |mesh: &Mesh| mesh.positions().iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
     let sizes = shapes::far_from_origin().into_iter().map(|shape| extent(&shape.mesh));
-    assert_eq!(sizes.map(|size| size.log10().floor()).collect::<Vec<_>>(), [4.0, -20.0, 20.0]);
+    let sizes = sizes.map(|size| size.log10().floor()).collect::<Vec<_>>();
+    assert_eq!(sizes, [4.0, -20.0, 20.0, -30.0, 30.0]);
 }

@@ -87,6 +87,23 @@ pub fn huge_sphere(triangles: usize) -> Mesh {
     mapped(&bumpy_sphere(triangles), |p| 1e20 * p)
 }
 
+/// A [`bumpy_sphere`] of radius about 10⁻³⁰.
+pub fn dust_sphere(triangles: usize) -> Mesh {
+    mapped(&bumpy_sphere(triangles), |p| 1e-30 * p)
+}
+
+/// A [`bumpy_sphere`] of radius about 10³⁰.
+pub fn vast_sphere(triangles: usize) -> Mesh {
+    mapped(&bumpy_sphere(triangles), |p| 1e30 * p)
+}
+
+/// A [`bumpy_sphere`] around (3·10⁶, 2·10⁶, −3·10⁶), a million times its size away, where f32 steps are 2⁻³
+/// to 2⁻²: what was a sphere is some blocks, with collapsed faces, faces without area and faces upon each
+/// other.
+pub fn far_sphere(triangles: usize) -> Mesh {
+    mapped(&bumpy_sphere(triangles), |p| p + DVec3::new(3e6, 2e6, -3e6))
+}
+
 fn mapped(mesh: &Mesh, map: impl Fn(DVec3) -> DVec3) -> Mesh {
     let positions = mesh.positions().iter().map(|p| map(p.as_dvec3()).as_vec3()).collect();
     build(positions, mesh.triangles().to_vec())

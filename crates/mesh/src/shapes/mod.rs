@@ -14,6 +14,7 @@
 //! ```
 
 mod defects;
+mod dirt;
 mod grids;
 mod part;
 mod small;
@@ -22,8 +23,11 @@ mod spheres;
 use glam::Vec3;
 
 pub use defects::{
-    duplicated_sphere, flipped_sphere, huge_sphere, moved_sphere, sliver_sphere, split_sphere,
-    tiny_sphere,
+    duplicated_sphere, dust_sphere, far_sphere, flipped_sphere, huge_sphere, moved_sphere,
+    sliver_sphere, split_sphere, tiny_sphere, vast_sphere,
+};
+pub use dirt::{
+    flipped_shells, littered_sphere, mixed_units, sliver_fan, stack, t_junctions, zero_area_thicket,
 };
 pub use grids::{mobius_strip, open_cylinder, open_grid, torus_knot};
 pub use part::cad_part;
@@ -50,7 +54,7 @@ pub struct NamedMesh {
 
 type Make = fn(usize) -> Mesh;
 
-const SHAPES: [(&str, Make); 22] = [
+const SHAPES: [(&str, Make); 32] = [
     ("icosphere", icosphere),
     ("torus-knot", torus_knot),
     ("bumpy-sphere", bumpy_sphere),
@@ -73,6 +77,16 @@ const SHAPES: [(&str, Make); 22] = [
     ("moved-sphere", moved_sphere),
     ("tiny-sphere", tiny_sphere),
     ("huge-sphere", huge_sphere),
+    ("dust-sphere", dust_sphere),
+    ("vast-sphere", vast_sphere),
+    ("far-sphere", far_sphere),
+    ("littered-sphere", littered_sphere),
+    ("t-junctions", t_junctions),
+    ("flipped-shells", flipped_shells),
+    ("sliver-fan", sliver_fan),
+    ("zero-area-thicket", zero_area_thicket),
+    ("stack", stack),
+    ("mixed-units", mixed_units),
 ];
 
 /// Every name that [`by_name`] knows.
@@ -158,6 +172,22 @@ pub fn far_from_origin() -> Vec<NamedMesh> {
         ("moved-sphere", moved_sphere(1280)),
         ("tiny-sphere", tiny_sphere(1280)),
         ("huge-sphere", huge_sphere(1280)),
+        ("dust-sphere", dust_sphere(320)),
+        ("vast-sphere", vast_sphere(320)),
+    ])
+}
+
+/// What exports, joins and conversions of units leave behind.
+pub fn dirty() -> Vec<NamedMesh> {
+    named([
+        ("far-sphere", far_sphere(1280)),
+        ("littered-sphere", littered_sphere(320)),
+        ("t-junctions", t_junctions(84)),
+        ("flipped-shells", flipped_shells(240)),
+        ("sliver-fan", sliver_fan(500)),
+        ("zero-area-thicket", zero_area_thicket(1200)),
+        ("stack", stack(20)),
+        ("mixed-units", mixed_units(240)),
     ])
 }
 
@@ -172,6 +202,7 @@ pub fn all() -> Vec<NamedMesh> {
         degenerate(),
         duplicate_vertices(),
         far_from_origin(),
+        dirty(),
     ];
     for shape in lists.into_iter().flatten() {
         if all.iter().all(|known: &NamedMesh| known.name != shape.name) {
