@@ -8,33 +8,24 @@ use drypoint_mesh::rig::{Pose, Rig, Skin};
 use drypoint_mesh::{EdgeFilter, EdgeId, Viewpoint};
 
 use crate::args::{ExtractArgs, Method};
-use crate::extract::{Found, found};
-use crate::gpu::Api;
+use crate::extract::{Found, found, goes_through_patches};
+use crate::gpu::{self, Api};
 use crate::progress::Stage;
 use crate::source::Source;
 
 /// A model that moves, in a pose.
-struct Posed<'a> {
-    rig: &'a Rig,
-    skin: Skin,
-    pose: Pose,
+pub(crate) struct Posed<'a> {
+    pub(crate) rig: &'a Rig,
+    pub(crate) skin: Skin,
+    pub(crate) pose: Pose,
+    /// Which edges are looked at.
     filter: EdgeFilter,
 }
 
 /// Refuses what poses no models, before one is read.
 pub(crate) fn check(args: &ExtractArgs) -> Result<(), String> {
     let is_posed = args.animation.animation.is_some();
-    match args.method.filter(|method| is_posed && method.api().is_some()) {
-        Some(method) => Err(refusal(method)),
-        None => Ok(()),
-    }
-}
-
-fn refusal(method: Method) -> String {
-    format!(
-        "--method {}: finds no contour edges of --animation",
-        method.api().map_or("", Api::name)
-    )
+    args.method.filter(|_| is_posed).and_then(Method::api).map_or(Ok(()), Api::check_rig)
 }
 
 /// Finds the contour edges in the pose that `args` ask for. Ends are the vertices of the file's mesh.
@@ -56,19 +47,16 @@ pub(crate) fn extract(
     let posed = Posed { rig, skin, pose, filter };
     let mut contours = Vec::new();
     let mut sets = Vec::new();
-    let (method, statistics) = match args.method {
-        None | Some(Method::BruteForce) => {
-            ("brute-force", posed.brute_force(viewpoint, &mut contours))
+    let (method, statistics) = if args.method.is_some_and(goes_through_patches) {
+        sets = posed.fuse(args).map_err(|error| format!("{}: {error}", source.name))?;
+        match args.method.and_then(Method::api) {
+            Some(api) => {
+                (api.name(), gpu::extract_rig(api, &posed, &sets, viewpoint, &mut contours)?)
+            }
+            None => ("patches", posed.patches(&sets, viewpoint, &mut contours)),
         }
-        Some(Method::Patches) => {
-            sets = posed.fuse(args).map_err(|error| format!("{}: {error}", source.name))?;
-            let extractor = RigExtractor::new(rig, &posed.skin, &sets);
-            let mut found = RigContours::default();
-            let statistics = extractor.edges(&posed.pose, viewpoint, &mut found);
-            contours.extend(found.edges());
-            ("patches", statistics)
-        }
-        Some(method @ (Method::Wgpu | Method::Ash)) => return Err(refusal(method)),
+    } else {
+        ("brute-force", posed.brute_force(viewpoint, &mut contours))
     };
     let in_file = |vertex: u32| source.model.rig_vertices[vertex as usize];
     let ends = |&edge: &EdgeId| {
@@ -96,6 +84,21 @@ impl Posed<'_> {
             ..Statistics::default()
         }
     }
+
+    /// Tests the patches of each part from where it sees the viewpoint, and every loose edge.
+    fn patches(
+        &self,
+        sets: &[PatchSet],
+        viewpoint: Viewpoint,
+        contours: &mut Vec<EdgeId>,
+    ) -> Statistics {
+        let mut found = RigContours::default();
+        let extractor = RigExtractor::new(self.rig, &self.skin, sets);
+        let statistics = extractor.edges(&self.pose, viewpoint, &mut found);
+        contours.extend(found.edges());
+        statistics
+    }
+
     /// Builds the patches of each shape, with progress.
     fn fuse(&self, args: &ExtractArgs) -> Result<Vec<PatchSet>, String> {
         let params = args.fusion.params()?;

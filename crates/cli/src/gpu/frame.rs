@@ -16,6 +16,7 @@ use super::wgpu;
 use crate::draw::Scene;
 use crate::gpu::Api;
 use crate::output::tell;
+use crate::rigged::Posed;
 
 /// Segments that there is room for at first. If there are more, they are found a second time.
 const FIRST_CAPACITY: u32 = 1 << 16;
@@ -68,16 +69,39 @@ pub(crate) fn extract(
     };
     contours.clear();
     contours.extend(segments.iter().map(|segment| segment.edge));
+    Ok(statistics(counted))
+}
+
+/// Finds the contour edges of a model that moves by their ids in its rig, through patches of its shapes.
+pub(crate) fn extract_rig(
+    api: Api,
+    posed: &Posed<'_>,
+    patches: &[PatchSet],
+    viewpoint: Viewpoint,
+    contours: &mut Vec<EdgeId>,
+) -> Result<Statistics, String> {
+    api.check_rig()?;
+    let placement = Placement::at_origin(viewpoint);
+    let (edges, counted): (Vec<EdgeId>, _) = match api {
+        #[cfg(feature = "wgpu")]
+        Api::Wgpu => wgpu::extract_rig(posed, patches, placement).map_err(plain)?,
+        _ => return Err(api.refusal()),
+    };
+    *contours = edges;
+    Ok(statistics(counted))
+}
+
+fn statistics(counted: shaders::Statistics) -> Statistics {
     // No more than there are edges.
     let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
-    Ok(Statistics {
+    Statistics {
         super_patches_tested: count(counted.super_patches_tested),
         super_patches_accepted: count(counted.super_patches_accepted),
         patches_tested: count(counted.patches_tested),
         patches_accepted: count(counted.patches_accepted),
         edges_tested: count(counted.edges_tested),
         contour_edges: count(counted.segments),
-    })
+    }
 }
 
 /// What `find` finds with room for so many segments: with more if not all fit.

@@ -15,7 +15,7 @@ use std::fmt;
 use crate::args::{DrawArgs, DrawMethod, Method, Show};
 use crate::lines::{Class, Hidden};
 
-pub(crate) use frame::{draw, extract};
+pub(crate) use frame::{draw, extract, extract_rig};
 
 /// By what the GPU is spoken to, whether the program was built with it or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +40,14 @@ impl Api {
             Self::Ash => cfg!(feature = "ash"),
         };
         if is_built_in { Ok(()) } else { Err(self.refusal()) }
+    }
+
+    /// Refuses models that move, if it poses none.
+    pub(crate) fn check_rig(self) -> Result<(), String> {
+        match self {
+            Self::Wgpu => Ok(()),
+            Self::Ash => Err("--method ash: finds no contour edges of --animation".to_owned()),
+        }
     }
 
     fn refusal(self) -> String {

@@ -50,6 +50,7 @@ fn animations_are_known_by_name_and_number() {
     let none = ["--animation", "corner.obj has no animations"];
     bench.fail("draw corner.obj -o a.svg --animation bend", &none);
     bench.fail("extract corner.obj --eye 1,2,3 --animation bend", &none);
+    bench.fail("extract moving.gltf --eye 1,2,3 --animation bend --method ash", &["--method ash"]);
     bench.succeed("patches moving.gltf -o a.patches");
     let at_rest = ["--animation", "a.patches", "at rest"];
     bench.fail("draw a.patches --model moving.gltf -o a.svg --animation bend", &at_rest);

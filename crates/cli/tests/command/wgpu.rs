@@ -1,6 +1,7 @@
 //! `--method wgpu`.
 
-use crate::gpu;
+use crate::bench::Bench;
+use crate::{gpu, moving};
 
 #[test]
 fn what_is_visible_is_drawn_and_nothing_else() {
@@ -25,6 +26,25 @@ fn every_shape_has_the_contour_of_brute_force() {
 #[test]
 fn patches_change_nothing_that_is_drawn() {
     gpu::patches_change_nothing_that_is_drawn("wgpu");
+}
+
+#[test]
+fn models_that_move_are_posed() {
+    if gpu::is_without_gpu() {
+        return;
+    }
+    let bench = Bench::new();
+    moving::write(&bench);
+    for pose in ["bend --time 0.37", "slide --time 1.21", "grow --time 0.4"] {
+        for view in ["--eye 5,9,7", "--direction 1,0.25,-3 --edges all"] {
+            let view = format!("extract moving.gltf --animation {pose} {view} --json");
+            let expected = bench.json(&view);
+            let found = bench.json(&format!("{view} --method wgpu"));
+            assert_eq!(found["contour"], expected["contour"], "{view}");
+            assert_eq!((&found["method"], &found["edges"]), (&"wgpu".into(), &expected["edges"]));
+            assert!(found["patches"].as_u64().unwrap() > 0, "{view}");
+        }
+    }
 }
 
 #[test]
