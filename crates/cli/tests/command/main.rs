@@ -11,11 +11,12 @@ mod frames;
 #[cfg(any(feature = "ash", feature = "wgpu"))]
 mod gpu;
 mod help;
-mod lines;
 mod islands;
+mod lines;
 mod moving;
 mod options;
 mod patches;
+mod reliability;
 mod show;
 #[cfg(feature = "wgpu")]
 mod wgpu;
