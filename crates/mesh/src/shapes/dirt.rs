@@ -132,7 +132,7 @@ pub fn zero_area_thicket(triangles: usize) -> Mesh {
 /// That many times the triangle of [`one_triangle`](super::one_triangle), every other one turned over:
 /// three edges of all those faces, and nothing else.
 pub fn stack(triangles: usize) -> Mesh {
-    let turned = |i: u32| if i % 2 == 0 { [0, 1, 2] } else { [1, 0, 2] };
+    let turned = |i: u32| if i.is_multiple_of(2) { [0, 1, 2] } else { [1, 0, 2] };
     let faces = (0..wish(triangles)).map(turned).collect();
     build(super::one_triangle().positions().to_vec(), faces)
 }
