@@ -70,8 +70,8 @@ impl Source {
         let io::Dropped { vertices, faces } = model.dropped;
         if vertices > 0 {
             tell(&format!(
-                "drypoint: {name}: {vertices} vertices are at no finite position, and {faces} faces that \
-                 use them are left out"
+                "drypoint: {name}: left out what is at no finite position: vertices {vertices}, faces \
+                 {faces}"
             ));
         }
         Ok(Self { name, model, is_posed: false })

@@ -26,8 +26,8 @@ fn islands_are_left_out_with_a_count() {
         let output = bench.run(&command.replace("MODEL", "island"));
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success(), "{errors}");
-        let expected = "drypoint: island.obj: 2 vertices are at no finite position, and 2 faces that use \
-                        them are left out";
+        let expected =
+            "drypoint: island.obj: left out what is at no finite position: vertices 2, faces 2";
         assert_eq!(errors.lines().next(), Some(expected), "{command}");
         let warned =
             String::from_utf8(bench.run(&command.replace("MODEL", "corner")).stderr).unwrap();

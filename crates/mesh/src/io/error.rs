@@ -55,7 +55,7 @@ pub enum ReadError {
     #[error("has no faces")]
     NoFaces,
     /// Every face uses a vertex that is NaN, infinite or beyond the range of f32.
-    #[error("has {count} faces, each with a vertex at no finite position")]
+    #[error("has no face without a vertex at no finite position; faces left out: {count}")]
     NoFiniteFaces {
         /// How many there are.
         count: usize,

@@ -115,7 +115,8 @@ fn a_file_of_nothing_else_is_refused() {
         (Format::Stl, stl.to_owned(), 1),
     ] {
         let error = parse(format, text.as_bytes()).unwrap_err().to_string();
-        let expected = format!("has {count} faces, each with a vertex at no finite position");
+        let expected =
+            format!("has no face without a vertex at no finite position; faces left out: {count}");
         assert_eq!(error, expected, "{format}");
     }
     // What has no faces says so, whatever its vertices.
