@@ -14,7 +14,7 @@ mod support;
 use drypoint_cpu::extract_patches;
 use drypoint_mesh::io;
 use drypoint_mesh::rig::Pose;
-use drypoint_mesh::{EdgeFilter, EdgeId, Viewpoint};
+use drypoint_mesh::{EdgeFilter, Viewpoint};
 use drypoint_tests::models;
 use drypoint_wgpu::{
     Extractor, Gpu, Method, Placement, RigCapacity, RigContours, RigInstance, RigModel,
@@ -110,7 +110,9 @@ fn check(gpu: &Gpu, extractor: &Extractor, subject: &Subject) {
             .map(|instance| Expected::new(subject, model.layout(), instance))
             .collect();
         for method in [Method::BruteForce, Method::Patches] {
-            let found = extract_rig_of(gpu, extractor, &mut contours, subject, instances, method);
+            let of = (&mut contours, skin);
+            let found =
+                support::extract_rig(gpu, extractor, of, instances, method).expect("it fits");
             for (expected, (found, instance)) in expected.iter().zip(found.iter().zip(instances)) {
                 let what = format!("{name}, {:?}, {method:?}", instance.placement.viewpoint);
                 let here = expected.compare(found, &what);
@@ -143,18 +145,6 @@ fn check(gpu: &Gpu, extractor: &Extractor, subject: &Subject) {
     );
     assert!(tested.abs_diff(on_the_cpu) <= borderline, "{name}");
     assert!(doubtful * 20 < all, "{name}: the margin would hide anything");
-}
-
-fn extract_rig_of(
-    gpu: &Gpu,
-    extractor: &Extractor,
-    contours: &mut RigContours,
-    subject: &Subject,
-    instances: &[RigInstance<'_>],
-    method: Method,
-) -> Vec<Vec<EdgeId>> {
-    let of = (contours, &subject.skin);
-    support::extract_rig(gpu, extractor, of, instances, method).expect("it fits")
 }
 
 #[test]

@@ -86,6 +86,7 @@ mod placed;
 mod raster;
 mod readback;
 mod rig_contours;
+mod rig_frame;
 mod rig_model;
 mod rig_pipelines;
 mod staging;

@@ -3,17 +3,17 @@
 use drypoint_mesh::EdgeId;
 use drypoint_mesh::rig::Skin;
 use drypoint_shaders::{
-    CarrierTransform, Method, PlanLimits, RigDispatch, RigInput, RigInstance, RigPlan, RigStep,
-    Segment, Statistics, Transform, Work,
+    Method, PlanLimits, RigDispatch, RigInput, RigInstance, RigPlan, RigStep, Segment, Statistics,
+    Transform,
 };
 use glam::{Vec3, Vec4};
 use wgpu::BufferUsages;
 
 use crate::Error;
-use crate::bindings::bind;
 use crate::device::{beginning_with, buffer};
 use crate::extractor::Extractor;
 use crate::output::Output;
+use crate::rig_frame::{FrameBindings, Sections};
 use crate::rig_model::{RigModel, UploadedRig};
 use crate::staging::Staging;
 
@@ -54,50 +54,11 @@ pub struct RigContours {
     input_buffer: wgpu::Buffer,
     positions: wgpu::Buffer,
     output: Output,
-    work_bindings: wgpu::BindGroup,
-    tally_bindings: wgpu::BindGroup,
-    loose_bindings: [wgpu::BindGroup; 3],
+    bindings: FrameBindings,
     dispatches: Vec<RigDispatch>,
     input: RigInput,
     work: Vec<u8>,
     staging: Staging,
-}
-
-/// Where each kind of input lies in its buffer, in bytes: begin and size.
-#[derive(Clone, Copy, Debug)]
-struct Sections {
-    viewpoints: [u64; 2],
-    transforms: [u64; 2],
-    carriers: [u64; 2],
-    weights: [u64; 2],
-    work: u64,
-    /// From one dispatch's work to the next.
-    stride: usize,
-    size: u64,
-}
-
-impl Sections {
-    fn new(limits: &wgpu::Limits, model: &RigModel, instances: u32, dispatches: usize) -> Self {
-        let layout = model.layout();
-        let storage = u64::from(limits.min_storage_buffer_offset_alignment.max(16));
-        let uniform = limits.min_uniform_buffer_offset_alignment.max(16);
-        let mut end = 0_u64;
-        let mut section = |count: u32, size: usize| {
-            let begin = end.next_multiple_of(storage);
-            let size = (u64::from(instances) * u64::from(count)).max(1) * size as u64;
-            end = begin + size;
-            [begin, size]
-        };
-        let placements = layout.part_count() + 1;
-        let viewpoints = section(placements, size_of::<Vec4>());
-        let transforms = section(placements, size_of::<Transform>());
-        let carriers = section(layout.counts.carrier_count, size_of::<CarrierTransform>());
-        let weights = section(layout.counts.morph_count, size_of::<f32>());
-        let work = end.next_multiple_of(u64::from(uniform));
-        let stride = size_of::<Work>().next_multiple_of(uniform as usize);
-        let size = work + (stride * dispatches.max(1)) as u64;
-        Self { viewpoints, transforms, carriers, weights, work, stride, size }
-    }
 }
 
 impl RigContours {
@@ -127,36 +88,10 @@ impl RigContours {
         let sides = u64::from(capacity.instances) * u64::from(counts.face_count) * 4;
         let sides = buffer(device, "the sides of faces", sides, BufferUsages::STORAGE)?;
         let output = Output::new(device, capacity.segments)?;
-        let part = |[offset, size]: [u64; 2]| {
-            let (buffer, size) = (&input_buffer, wgpu::BufferSize::new(size));
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset, size })
-        };
-        let work = || part([sections.work, size_of::<Work>() as u64]);
-        let [viewpoints, carriers, weights] =
-            [sections.viewpoints, sections.carriers, sections.weights].map(part);
-        let [counted, added, arguing, found, positioned, sided] = [
-            &output.counters,
-            &output.totals,
-            &output.arguments,
-            &output.segments,
-            &positions,
-            &sides,
-        ]
-        .map(wgpu::Buffer::as_entire_binding);
-        let bind = |layout, resources| bind(device, "the bindings of a frame", layout, resources);
-        let pipelines = &model.uploaded.pipelines;
-        let vertices = vec![work(), carriers.clone(), weights, positioned.clone()];
-        let faces = vec![work(), carriers, viewpoints.clone(), positioned, sided.clone()];
-        let edges = vec![work(), counted.clone(), sided, found.clone()];
-        let extraction = vec![work(), counted.clone(), viewpoints, found];
+        let buffers = (&input_buffer, &positions, &sides, &output);
+        let bindings = FrameBindings::new(extractor, model, &sections, buffers)?;
         Ok(Self {
-            loose_bindings: [
-                bind(&pipelines.vertices.frame_layout, vertices)?,
-                bind(&pipelines.faces.frame_layout, faces)?,
-                bind(&pipelines.edges.frame_layout, edges)?,
-            ],
-            work_bindings: bind(extractor.work_layout(), extraction)?,
-            tally_bindings: bind(extractor.tally_layout(), vec![work(), counted, added, arguing])?,
+            bindings,
             model: model.clone(),
             capacity,
             sections,
@@ -333,18 +268,18 @@ impl RigContours {
                 RigStep::Parts { class, stage, chunk } => {
                     pass.set_pipeline(extractor.of_stage(stage));
                     pass.set_bind_group(0, &uploaded.chunk_bindings[class][chunk], &[]);
-                    pass.set_bind_group(1, &self.work_bindings, &[offset]);
+                    pass.set_bind_group(1, &self.bindings.parts, &[offset]);
                     None
                 }
             };
             if let Some((number, pipeline)) = loose {
                 pass.set_pipeline(&pipeline.pipeline);
                 pass.set_bind_group(0, &uploaded.loose_bindings[number], &[]);
-                pass.set_bind_group(1, &self.loose_bindings[number], &[offset]);
+                pass.set_bind_group(1, &self.bindings.loose[number], &[offset]);
             }
             pass.dispatch_workgroups(dispatch.grid[0], dispatch.grid[1], 1);
             if !matches!(dispatch.step, RigStep::Vertices | RigStep::Faces) {
-                extractor.tally(pass, &self.tally_bindings, offset);
+                extractor.tally(pass, &self.bindings.tally, offset);
             }
         }
     }

@@ -220,7 +220,8 @@ fn poses_that_cannot_be_are_refused() {
     expect_silence();
 }
 
-/// A rig is drawn as its mesh in that pose is, twice, beside a model that does not move.
+/// A rig is drawn in two poses as its meshes in these are.
+// Long because one picture is drawn in two ways, with all that either needs.
 #[test]
 fn pictures_of_rigs_are_those_of_their_meshes() {
     if support::is_without_gpu() {
