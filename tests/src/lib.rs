@@ -3,11 +3,13 @@
 
 pub mod boundary;
 pub mod compare;
+pub mod hostile;
 pub mod judges;
 pub mod meshes;
 pub mod models;
 pub mod presets;
 pub mod report;
+pub mod soup;
 pub mod viewpoints;
 
 /// The example of the README is a test.

@@ -1,14 +1,13 @@
-//! Writes what fuzzing starts from: small assets of each kind.
+//! Small assets of each kind.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 
-use drypoint_fusion::{FusionParams, PatchSet, SuperPatch, fuse};
+use drypoint_fusion::{FusionParams, InvalidPatches, PatchSet, SuperPatch, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, shapes};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = PathBuf::from(std::env::args_os().nth(1).ok_or("usage: seeds FOLDER")?);
-    std::fs::create_dir_all(&folder)?;
+use crate::Failure;
+
+pub(crate) fn all() -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let meshes = [
         ("empty", shapes::empty()),
         ("cube", shapes::cube()),
@@ -16,6 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("open-grid", shapes::open_grid(32)),
         ("book", shapes::book(3)),
     ];
+    let mut seeds = Vec::new();
     for (name, mesh) in meshes {
         let adjacency = MeshAdjacency::new(&mesh);
         for (kind, filter, params) in [
@@ -24,15 +24,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ("planes", EdgeFilter::All, FusionParams::FAST),
         ] {
             let set = fuse(&mesh, &adjacency, filter, &params, &|_| ControlFlow::Continue(()))?;
-            set.save(&folder.join(format!("{name}-{kind}")))?;
-            with_second_level(set)?.save(&folder.join(format!("{name}-{kind}-two-levels")))?;
+            seeds.push((format!("{name}-{kind}"), set.to_bytes()));
+            let two_levels = with_second_level(set)?.to_bytes();
+            seeds.push((format!("{name}-{kind}-two-levels"), two_levels));
         }
     }
-    Ok(())
+    Ok(seeds)
 }
 
 /// All patches but the last in super-patches of one patch each.
-fn with_second_level(set: PatchSet) -> Result<PatchSet, drypoint_fusion::InvalidPatches> {
+fn with_second_level(set: PatchSet) -> Result<PatchSet, InvalidPatches> {
     let count = set.patches().len().saturating_sub(1);
     let of_one = |(first_patch, index): (u32, usize)| {
         let bound = set.patches()[index].bound;
