@@ -16,6 +16,7 @@ use super::wgpu;
 use crate::draw::Scene;
 use crate::gpu::Api;
 use crate::output::tell;
+#[cfg(feature = "wgpu")]
 use crate::rigged::Posed;
 
 /// Segments that there is room for at first. If there are more, they are found a second time.
@@ -73,6 +74,7 @@ pub(crate) fn extract(
 }
 
 /// Finds the contour edges of a model that moves by their ids in its rig, through patches of its shapes.
+#[cfg(feature = "wgpu")]
 pub(crate) fn extract_rig(
     api: Api,
     posed: &Posed<'_>,
@@ -82,11 +84,7 @@ pub(crate) fn extract_rig(
 ) -> Result<Statistics, String> {
     api.check_rig()?;
     let placement = Placement::at_origin(viewpoint);
-    let (edges, counted): (Vec<EdgeId>, _) = match api {
-        #[cfg(feature = "wgpu")]
-        Api::Wgpu => wgpu::extract_rig(posed, patches, placement).map_err(plain)?,
-        _ => return Err(api.refusal()),
-    };
+    let (edges, counted) = wgpu::extract_rig(posed, patches, placement).map_err(plain)?;
     *contours = edges;
     Ok(statistics(counted))
 }

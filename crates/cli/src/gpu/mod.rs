@@ -15,7 +15,21 @@ use std::fmt;
 use crate::args::{DrawArgs, DrawMethod, Method, Show};
 use crate::lines::{Class, Hidden};
 
-pub(crate) use frame::{draw, extract, extract_rig};
+#[cfg(feature = "wgpu")]
+pub(crate) use frame::extract_rig;
+pub(crate) use frame::{draw, extract};
+
+/// What a program that was built without `drypoint-wgpu` says, which alone poses models.
+#[cfg(not(feature = "wgpu"))]
+pub(crate) fn extract_rig(
+    api: Api,
+    _: &crate::rigged::Posed<'_>,
+    _: &[drypoint_fusion::PatchSet],
+    _: drypoint_mesh::Viewpoint,
+    _: &mut Vec<drypoint_mesh::EdgeId>,
+) -> Result<drypoint_cpu::Statistics, String> {
+    Err(api.refusal())
+}
 
 /// By what the GPU is spoken to, whether the program was built with it or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

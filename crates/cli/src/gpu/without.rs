@@ -7,7 +7,6 @@ use drypoint_mesh::{EdgeId, Viewpoint};
 
 use crate::draw::Scene;
 use crate::gpu::Api;
-use crate::rigged::Posed;
 
 pub(crate) fn draw(
     api: Api,
@@ -15,16 +14,6 @@ pub(crate) fn draw(
     _: Option<&PatchSet>,
     _: &Style,
 ) -> Result<Vec<u8>, String> {
-    Err(api.refusal())
-}
-
-pub(crate) fn extract_rig(
-    api: Api,
-    _: &Posed<'_>,
-    _: &[PatchSet],
-    _: Viewpoint,
-    _: &mut Vec<EdgeId>,
-) -> Result<Statistics, String> {
     Err(api.refusal())
 }
 
