@@ -19,8 +19,10 @@ fn check(name: &str, set: &PatchSet) {
     let looked = look(set, 3_000).unwrap_or_else(|lost| panic!("{name}: {lost:?}"));
     let bounds = (set.patches().len() + set.super_patches().len()) as u64;
     assert!(looked.viewpoints >= bounds * LEAST as u64, "{name}: {looked:?}");
-    // Culling nothing would lose nothing.
-    assert!(looked.culled * 4 > looked.viewpoints || bounds == 0, "{name}: {looked:?}");
+    // Culling nothing would lose nothing; but of a mesh whose squares f32 does not hold nothing need be.
+    let is_held = (1e-13..1e17).contains(&set.provenance().unit);
+    let culls = looked.culled * 4 > looked.viewpoints;
+    assert!(culls || bounds == 0 || !is_held, "{name}: {looked:?}");
 }
 
 #[test]
