@@ -1,6 +1,6 @@
 //! From vertices with their joints to a rig.
 
-use glam::Vec3;
+use glam::{DAffine3, Vec3};
 use rustc_hash::FxHashMap;
 
 use super::nodes::parents_first;
@@ -33,6 +33,8 @@ pub struct Offset {
 pub struct RigBuilder {
     rig: Rig,
     carriers: FxHashMap<Carrier, u32>,
+    /// For each node where it is in the scene at rest, once that was asked for.
+    resting: Option<Vec<DAffine3>>,
     /// Vertices by all that decides where they are.
     vertices: FxHashMap<Box<[u32]>, u32>,
     key: Vec<u32>,
@@ -78,6 +80,7 @@ impl RigBuilder {
                 *rest = Local::Trs { translation, rotation, scale };
             }
         }
+        self.resting = None;
         self.rig.animations.push(animation);
     }
 
@@ -117,9 +120,16 @@ impl RigBuilder {
         vertex
     }
 
-    /// Where carriers are at rest, those that there are by now.
-    pub fn rest(&self) -> Pose {
-        self.rig.rest()
+    /// Appends to `pose`, which is the rest so far and of this builder, the carriers and the morph targets
+    /// that came since: so a model of many carriers costs no more than each of them once. Animations must
+    /// have come before.
+    pub fn extend_rest(&mut self, pose: &mut Pose) {
+        let rig = &self.rig;
+        let nodes = self.resting.get_or_insert_with(|| rig.nodes_in_scene(&rig.resting_locals()));
+        let carriers = rig.carriers.iter().skip(pose.to_scene.len());
+        pose.to_scene.extend(carriers.map(|carrier| carrier.in_scene(nodes)));
+        let morphs = rig.morphs.iter().skip(pose.weights.len());
+        pose.weights.extend(morphs.map(|morph| morph.rest));
     }
 
     /// Adds a triangle.
@@ -146,7 +156,7 @@ fn index(index: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DAffine3, DVec3};
+    use glam::DVec3;
 
     fn influence(carrier: u32, weight: f64) -> Influence {
         Influence { carrier, weight, position: Vec3::ONE }
@@ -199,5 +209,25 @@ mod tests {
         // A quarter of (1 + 2 · 0.5, 1, 1) and three of (1, 1 + 4 · 0.5, −3).
         let expected = 0.25 * DVec3::new(2.0, 1.0, 1.0) + 0.75 * DVec3::new(1.0, 3.0, -3.0);
         assert_eq!(rig.position(vertex, &pose), expected);
+    }
+
+    #[test]
+    fn a_rest_that_grows_is_the_rest() {
+        let node = |parent, x| Node {
+            name: String::new(),
+            parent,
+            rest: Local::Matrix(DAffine3::from_translation(DVec3::new(x, 0.0, 0.0))),
+            moves: true,
+        };
+        let mut builder = RigBuilder::new(vec![node(None, 1.0), node(Some(0), 4.0)]).unwrap();
+        let mut pose = Pose::default();
+        builder.carrier(Some(1), None);
+        builder.extend_rest(&mut pose);
+        builder.morph(0, 0.5);
+        builder.carrier(None, None);
+        builder.carrier(Some(0), None);
+        builder.extend_rest(&mut pose);
+        assert_eq!(pose.to_scene[0].translation, DVec3::new(5.0, 0.0, 0.0));
+        assert_eq!(pose, builder.finish().rest());
     }
 }

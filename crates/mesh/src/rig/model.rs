@@ -15,6 +15,13 @@ pub struct Carrier {
     pub mesh: Option<u32>,
 }
 
+impl Carrier {
+    /// From its space to that of the scene, in which the nodes are there.
+    pub(super) fn in_scene(&self, nodes: &[DAffine3]) -> DAffine3 {
+        self.node.map_or(DAffine3::IDENTITY, |node| nodes[node as usize])
+    }
+}
+
 /// A morph target of a node's mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Morph {
@@ -141,8 +148,7 @@ impl Rig {
 
     /// Where it is when nothing is animated.
     pub fn rest(&self) -> Pose {
-        let locals: Vec<Local> = self.nodes.iter().map(|node| node.rest).collect();
-        self.pose(&locals, self.morphs.iter().map(|morph| morph.rest).collect())
+        self.pose(&self.resting_locals(), self.morphs.iter().map(|morph| morph.rest).collect())
     }
 
     /// Where it is at a time of an animation, in seconds: before its first key and after its last it
@@ -151,7 +157,7 @@ impl Rig {
     /// # Panics
     /// If there is no such animation.
     pub fn pose_at(&self, animation: usize, seconds: f64) -> Pose {
-        let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.rest).collect();
+        let mut locals = self.resting_locals();
         let mut weights: Vec<f64> = self.morphs.iter().map(|morph| morph.rest).collect();
         for channel in &self.animations[animation].channels {
             if channel.property == Property::Weights {
@@ -175,6 +181,17 @@ impl Rig {
     pub fn pose(&self, locals: &[Local], weights: Vec<f64>) -> Pose {
         assert_eq!(locals.len(), self.nodes.len(), "a local place for each node");
         assert_eq!(weights.len(), self.morphs.len(), "a weight for each morph target");
+        let nodes = self.nodes_in_scene(locals);
+        Pose { to_scene: self.carriers.iter().map(|c| c.in_scene(&nodes)).collect(), weights }
+    }
+
+    /// For each node where it is in its parent's space when nothing is animated.
+    pub(super) fn resting_locals(&self) -> Vec<Local> {
+        self.nodes.iter().map(|node| node.rest).collect()
+    }
+
+    /// For each node from its space to that of the scene.
+    pub(super) fn nodes_in_scene(&self, locals: &[Local]) -> Vec<DAffine3> {
         let mut nodes = vec![DAffine3::IDENTITY; self.nodes.len()];
         for &index in &self.order {
             let node = &self.nodes[index as usize];
@@ -182,10 +199,7 @@ impl Rig {
             let parent = node.parent.map_or(DAffine3::IDENTITY, |parent| nodes[parent as usize]);
             nodes[index as usize] = parent * local.to_affine();
         }
-        let to_scene = |carrier: &Carrier| {
-            carrier.node.map_or(DAffine3::IDENTITY, |node| nodes[node as usize])
-        };
-        Pose { to_scene: self.carriers.iter().map(to_scene).collect(), weights }
+        nodes
     }
 
     /// Which carriers mirror in a pose: there a triangle's corners run the other way.

@@ -11,11 +11,13 @@ use super::welded::{Found, Welded, add};
 use super::{Piece, Surface};
 use crate::io::error::{Fault, Place, ReadError};
 use crate::io::parts::{self, Dropped, Model, Parts};
-use crate::rig::{Animation, Influence, Offset, Property, RigBuilder, posed_position};
+use crate::rig::{Animation, Influence, Offset, Pose, Property, RigBuilder, posed_position};
 
 /// The rig in the making, and where its vertices rest.
 pub(super) struct Moving {
     builder: RigBuilder,
+    /// Where the carriers made so far rest.
+    pose: Pose,
     bases: Vec<Base>,
     /// Of each node the first of its morph targets, and how many there are.
     morphs: Vec<(u32, usize)>,
@@ -75,6 +77,7 @@ impl Moving {
         let (welded, sources, triangles, dropped) = Default::default();
         Ok(Some(Self {
             builder,
+            pose: Pose::default(),
             bases,
             morphs,
             is_repeated,
@@ -112,10 +115,10 @@ impl Surface for Moving {
         let first_morph = self.morphs[piece.node].0;
         let carrying = self.carrying(piece)?;
         // After the last carrier of this piece was made.
-        let pose = self.builder.rest();
+        self.builder.extend_rest(&mut self.pose);
         let (mut joints, mut carried) = (Vec::new(), Vec::new());
         let (mut influences, mut offsets) = (Vec::new(), Vec::new());
-        let Self { builder, welded, sources, triangles, dropped, strict, .. } = self;
+        let Self { builder, pose, welded, sources, triangles, dropped, strict, .. } = self;
         add(piece, triangles, (dropped, *strict), |vertex| {
             carrying.of_vertex(vertex, &mut joints, &mut carried)?;
             let stored = piece.position(vertex);
@@ -129,7 +132,7 @@ impl Surface for Moving {
                     offsets.push(Offset { morph, influence: number, by: by.as_vec3() });
                 }
             }
-            let at = posed_position(&influences, &offsets, &pose);
+            let at = posed_position(&influences, &offsets, pose);
             // Not finite if a part of it is not; by weight 0, only so.
             let is_finite = influences.iter().all(|influence| influence.position.is_finite())
                 && offsets.iter().all(|offset| offset.by.is_finite());
