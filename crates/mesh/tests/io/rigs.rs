@@ -151,3 +151,31 @@ fn keys_that_make_no_curve_are_refused() {
     );
     check(&[0.0], &[0.0, f32::NAN, 0.0], "has a number 1 that is not finite");
 }
+
+#[test]
+fn channels_that_move_no_node_are_passed_over() {
+    let document = |target: &str, node: &str| {
+        let mut gltf = Gltf::default();
+        gltf.floats(&CORNERS, "VEC3");
+        gltf.floats(&[0.0], "SCALAR");
+        gltf.floats(&[0.0, 7.0, 0.0], "VEC3");
+        gltf.glb(&format!(
+            r#""extensionsUsed": ["KHR_animation_pointer"],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "nodes": [{{"mesh": {node}}}], "animations": [{{
+                "samplers": [{{"input": 1, "output": 2}}],
+                "channels": [{{"sampler": 0, "target": {{{target}}}}},
+                    {{"sampler": 0, "target": {{"node": 0, "path": "translation"}}}}]}}]"#
+        ))
+    };
+    let pointer = r#""path": "pointer", "extensions": {"KHR_animation_pointer":
+        {"pointer": "/materials/0/alphaCutoff"}}"#;
+    for target in [pointer, r#""path": "rotation""#] {
+        let rig = rig(&document(target, "0"));
+        assert_eq!(rig.animations()[0].channels.len(), 1);
+        check(&rig, 0.0, [1.0, 7.0, 0.0]);
+        // What else is wrong is still told.
+        let error = parse(Format::Gltf, &document(target, "true")).unwrap_err().to_string();
+        assert!(error.contains("invalid type: boolean"), "{error}");
+    }
+}

@@ -38,8 +38,7 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     pub(super) fn parse(bytes: &'a [u8], folder: Option<&Path>) -> Result<Self, ReadError> {
         let (text, blob) = split(bytes)?;
-        let root: json::Root =
-            json::deserialize::from_slice(&text).map_err(|error| invalid(error.to_string()))?;
+        let root = root(&text)?;
         let harmless = |name: &&String| !HARMLESS.iter().any(|known| name.starts_with(known));
         if let Some(name) = root.extensions_required.iter().find(harmless) {
             return Err(ReadError::RequiredExtension { name: name.clone() });
@@ -60,6 +59,36 @@ impl<'a> Document<'a> {
             buffers.push(bytes);
         }
         Ok(Self { root, buffers })
+    }
+}
+
+/// The document in `text`, but for channels of animations that move no node: such a channel is to be
+/// ignored, or an extension says what it moves (§5.10.1 of the specification), and the crate refuses it.
+fn root(text: &[u8]) -> Result<json::Root, ReadError> {
+    let failed = |error: json::Error| invalid(error.to_string());
+    let error = match json::deserialize::from_slice(text) {
+        Ok(root) => return Ok(root),
+        Err(error) => error,
+    };
+    let mut value: json::Value = json::deserialize::from_slice(text).map_err(failed)?;
+    let mut is_changed = false;
+    let animations = value.get_mut("animations").and_then(json::Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        let channels = animation.get_mut("channels").and_then(json::Value::as_array_mut);
+        channels.into_iter().for_each(|channels| {
+            let count = channels.len();
+            let moves_nothing = |channel: &json::Value| {
+                channel.get("target").is_some_and(|t| t.is_object() && t.get("node").is_none())
+            };
+            channels.retain(|channel| !moves_nothing(channel));
+            is_changed |= channels.len() < count;
+        });
+    }
+    // What was said first knows its line.
+    if is_changed {
+        json::deserialize::from_value(value).map_err(failed)
+    } else {
+        Err(failed(error))
     }
 }
 
