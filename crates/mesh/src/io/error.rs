@@ -273,6 +273,12 @@ pub enum Fault {
         /// How many joints the skin has.
         joint_count: u64,
     },
+    /// Data that a glTF file uses again and again.
+    #[error("repeats data until it needs far more memory than a file of {bytes} bytes may")]
+    OutOfProportion {
+        /// Bytes of the document and its buffers.
+        bytes: u64,
+    },
     /// Keys of an animation that make no curve.
     #[error("{error}")]
     Curve {

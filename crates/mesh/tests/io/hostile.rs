@@ -126,6 +126,22 @@ fn apply(damage: &Damage, bytes: &mut Vec<u8>) {
     }
 }
 
+/// A few hundred kilobytes that ask for a hundred million triangles are refused before any is read.
+#[test]
+fn meshes_are_not_placed_beyond_measure() {
+    let mut gltf = Gltf::default();
+    gltf.floats(&CORNERS, "VEC3");
+    let corners: Vec<u8> = [0, 1, 2].repeat(100_000);
+    gltf.data(&corners, corners.len(), r#""componentType": 5121, "type": "SCALAR""#);
+    let mesh = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}]"#;
+    let bytes = gltf.glb(&format!(r#"{mesh}, "nodes": [{}]"#, [r#"{"mesh": 0}"#; 1000].join(", ")));
+    let error = parse(Format::Gltf, &bytes).unwrap_err().to_string();
+    assert!(
+        error.starts_with("nodes[671]: repeats data until it needs far more memory"),
+        "{error}"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 

@@ -247,8 +247,10 @@ fn sparse(
         return Err(Fault::Missing { missing: "bufferView" }.at(place.clone()));
     };
     let mut bytes = Vec::new();
+    let at_place = |fault: Fault| fault.at(place.clone());
     let count = match base {
         Some(base) => {
+            document.spend((base.count * size) as u64).map_err(at_place)?;
             let elements = (0..base.count).map(|i| &base.bytes[i * base.stride..][..size]);
             elements.for_each(|element| bytes.extend_from_slice(element));
             base.count
@@ -262,6 +264,7 @@ fn sparse(
             };
             let count = usize::try_from(json.count.0).ok().filter(|&n| n as u64 <= available);
             let count = count.ok_or_else(too_short)?;
+            document.spend((count * size) as u64).map_err(at_place)?;
             bytes.resize(count * size, 0);
             count
         }

@@ -73,6 +73,9 @@ fn curve(
     };
     let values = Elements::curve_values(document, sampler.output.value(), shape, place)?;
     let components = shape.multiplicity();
+    document
+        .spend(8 * (times.count() + components * values.count()) as u64)
+        .map_err(|fault| fault.at(place.clone()))?;
     let numbers = |elements: &Elements<'_>, components: usize| -> Vec<f64> {
         let of_element = |i| (0..components).map(move |component| (i, component));
         let each = (0..elements.count()).flat_map(of_element);

@@ -1,6 +1,7 @@
 //! The JSON of a file and the bytes that it describes.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::fs;
 use std::path::Path;
 
@@ -27,12 +28,24 @@ const HARMLESS: [&str; 9] = [
     "MSFT_texture_",
 ];
 
+/// What reading may cost whatever the file, in units of a few bytes or nanoseconds: 67 million triangles,
+/// say, of places of one mesh. What names the same data again and again would else need any memory.
+const ALLOWANCE: u64 = 1 << 30;
+
+/// What it may cost for each byte of the document and its buffers. Data that is used once needs up to 24
+/// units, for triangles of strips by single bytes on vertices that follow joints.
+const ALLOWANCE_PER_BYTE: u64 = 64;
+
 /// A glTF document and its buffers.
 #[derive(Debug)]
 pub(super) struct Document<'a> {
     pub(super) root: json::Root,
     /// Each at least as long as it says.
     pub(super) buffers: Vec<Cow<'a, [u8]>>,
+    /// Of the document and its buffers.
+    bytes: u64,
+    /// What reading may still cost.
+    pub(super) allowance: Cell<u64>,
 }
 
 impl<'a> Document<'a> {
@@ -58,7 +71,20 @@ impl<'a> Document<'a> {
             }
             buffers.push(bytes);
         }
-        Ok(Self { root, buffers })
+        let bytes = buffers.iter().map(|buffer| buffer.len() as u64).sum::<u64>();
+        let bytes = bytes + text.len() as u64;
+        let allowance = Cell::new(ALLOWANCE.max(ALLOWANCE_PER_BYTE.saturating_mul(bytes)));
+        Ok(Self { root, buffers, bytes, allowance })
+    }
+
+    /// Takes what something costs, in units of a few bytes or nanoseconds, from what reading may cost.
+    ///
+    /// # Errors
+    /// That was too much: something is used too often.
+    pub(super) fn spend(&self, units: u64) -> Result<(), Fault> {
+        let left = self.allowance.get().checked_sub(units);
+        self.allowance.set(left.ok_or(Fault::OutOfProportion { bytes: self.bytes })?);
+        Ok(())
     }
 }
 

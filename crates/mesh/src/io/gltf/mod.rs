@@ -43,13 +43,53 @@ pub(super) fn parse(
     folder: Option<&Path>,
     &ReadOptions { strict }: &ReadOptions,
 ) -> Result<Model, ReadError> {
-    let document = Document::parse(bytes, folder)?;
+    model(&Document::parse(bytes, folder)?, strict)
+}
+
+fn model(document: &Document<'_>, strict: bool) -> Result<Model, ReadError> {
     let nodes = Nodes::of(&document.root)?;
     let drawn = nodes.drawn(&document.root)?;
-    match Moving::new(&document, &nodes, &drawn, strict)? {
-        Some(moving) => read(&document, &drawn, moving),
-        None => read(&document, &drawn, Still::new(&nodes, strict)),
+    spend_on_places(document, &drawn)?;
+    match Moving::new(document, &nodes, &drawn, strict)? {
+        Some(moving) => read(document, &drawn, moving),
+        None => read(document, &drawn, Still::new(&nodes, strict)),
     }
+}
+
+/// Takes what all places of meshes cost from what reading may cost, before any of them is read.
+fn spend_on_places(document: &Document<'_>, drawn: &[usize]) -> Result<(), ReadError> {
+    const TRIANGLE: u64 = 16;
+    let root = &document.root;
+    let available = document.buffers.iter().map(|buffer| buffer.len() as u64).sum::<u64>();
+    let triangles = |primitive: &Primitive| {
+        let positions = primitive.attributes.get(&Valid(Semantic::Positions));
+        let corners = primitive.indices.or(positions.copied());
+        let corners = corners.and_then(|corners| root.accessors.get(corners.value()));
+        // More than there are bytes for is an error of its own.
+        let corners = corners.map_or(0, |corners| corners.count.0).min(available);
+        match primitive.mode {
+            Valid(Mode::Triangles) => corners / 3,
+            Valid(Mode::TriangleStrip | Mode::TriangleFan) => corners,
+            _ => 0,
+        }
+    };
+    let text = |name: &Option<String>| name.as_ref().map_or(0, |name| name.len() as u64 / 4);
+    let of_primitive = |primitive: &Primitive| {
+        let material = primitive.material.and_then(|material| root.materials.get(material.value()));
+        TRIANGLE * triangles(primitive) + material.map_or(0, |material| text(&material.name))
+    };
+    let of_meshes: Vec<u64> = (root.meshes.iter())
+        .map(|mesh| mesh.primitives.iter().map(of_primitive).fold(0, u64::saturating_add))
+        .collect();
+    for &node in drawn {
+        let Some(index) = root.nodes[node].mesh.map(|mesh| mesh.value()) else { continue };
+        let Some(mesh) = root.meshes.get(index) else { continue };
+        // Each primitive is named after its node or its mesh.
+        let names = text(&root.nodes[node].name).max(text(&mesh.name));
+        let units = of_meshes[index].saturating_add(names * mesh.primitives.len() as u64);
+        document.spend(units).map_err(|fault| fault.at(Place::Json(format!("nodes[{node}]"))))?;
+    }
+    Ok(())
 }
 
 /// What takes the triangles of a scene.
@@ -171,4 +211,77 @@ fn positions<'a>(
     let positions = primitive.attributes.get(&Valid(Semantic::Positions));
     let missing = || Fault::Missing { missing: "attribute POSITION" }.at(place.clone());
     Elements::positions(document, positions.ok_or_else(missing)?.value(), place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle, of which all else is made: positions, indices, a time, a value, and zeros of which one is
+    /// given anew.
+    fn document(rest: &str) -> Vec<u8> {
+        format!(
+            r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": 48, "uri":
+            "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAAAAAAAAAAAA"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 48}}], "accessors": [
+            {{"bufferView": 0, "count": 3, "componentType": 5126, "type": "VEC3"}},
+            {{"bufferView": 0, "byteOffset": 36, "count": 3, "componentType": 5121, "type": "SCALAR"}},
+            {{"bufferView": 0, "byteOffset": 40, "count": 1, "componentType": 5126, "type": "SCALAR"}},
+            {{"bufferView": 0, "count": 1, "componentType": 5126, "type": "VEC3"}},
+            {{"count": 3, "componentType": 5126, "type": "VEC3", "sparse": {{"count": 1,
+                "indices": {{"bufferView": 0, "byteOffset": 36, "componentType": 5121}},
+                "values": {{"bufferView": 0}}}}}}], {rest}}}"#
+        )
+        .into_bytes()
+    }
+
+    /// What each further copy of `repeated`, which stands between the others, costs.
+    #[track_caller]
+    fn check(before: &str, repeated: &str, after: &str, expected: u64) {
+        let cost = |count: usize| {
+            let bytes = document(&format!("{before}{}{after}", vec![repeated; count].join(", ")));
+            let document = Document::parse(&bytes, None).unwrap();
+            let allowance = document.allowance.get();
+            model(&document, true).unwrap_or_else(|error| panic!("{error}"));
+            // The same with one unit less than it needs.
+            let spent = allowance - document.allowance.get();
+            document.allowance.set(spent - 1);
+            let error = model(&document, true).unwrap_err().to_string();
+            assert!(error.contains(": repeats data until"), "{error}");
+            spent
+        };
+        assert_eq!(cost(7) - cost(3), 4 * expected, "{repeated}");
+    }
+
+    #[test]
+    fn what_is_used_again_and_again_is_paid_for() {
+        let mesh = |primitive: &str| {
+            format!(
+                r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}{primitive}}}]}}]"#
+            )
+        };
+        // Places: a triangle, three vertices with an influence each.
+        let before = mesh(r#", "indices": 1"#) + r#", "nodes": ["#;
+        check(&before, r#"{"mesh": 0}"#, "]", 16 + 3 * 16);
+        // Names, a fourth of their bytes.
+        let name = "n".repeat(400);
+        let named = format!(r#"{{"mesh": 0, "name": "{name}"}}"#);
+        check(&before, &named, "]", 16 + 3 * 16 + 100);
+        // Displacements: three of which two are not zero.
+        let before = mesh(r#", "targets": [{"POSITION": 0}]"#);
+        let (before, after) = before.split_at(before.find('[').unwrap() + 1);
+        let (first, rest) = after.split_at(after.find(r#"{"POSITION": 0}]"#).unwrap());
+        let (target, rest) = rest.split_at(r#"{"POSITION": 0}"#.len());
+        let nodes = r#", "nodes": [{"mesh": 0}]"#;
+        check(&format!("{before}{first}"), target, &format!("{rest}{nodes}"), 3 + 2 * 17);
+        // The same of an accessor that is unpacked.
+        let sparse = r#"{"POSITION": 4}"#;
+        check(&format!("{before}{first}"), sparse, &format!("{rest}{nodes}"), 3 + 36);
+        // Keys: one time, three numbers.
+        let before = mesh("")
+            + nodes
+            + r#", "animations": [{"samplers": [{"input": 2, "output": 3}], "channels": ["#;
+        let channel = r#"{"sampler": 0, "target": {"node": 0, "path": "translation"}}"#;
+        check(&before, channel, "]}]", 8 * 4);
+    }
 }

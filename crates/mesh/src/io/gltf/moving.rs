@@ -118,20 +118,25 @@ impl Surface for Moving {
         self.builder.extend_rest(&mut self.pose);
         let (mut joints, mut carried) = (Vec::new(), Vec::new());
         let (mut influences, mut offsets) = (Vec::new(), Vec::new());
+        let spend = |units: usize| piece.document.spend(units as u64);
         let Self { builder, pose, welded, sources, triangles, dropped, strict, .. } = self;
         add(piece, triangles, (dropped, *strict), |vertex| {
             carrying.of_vertex(vertex, &mut joints, &mut carried)?;
             let stored = piece.position(vertex);
             influences.clear();
             offsets.clear();
+            spend(carried.len() * (16 + targets.len()))?;
             for (number, Carried { carrier, weight, bind }) in (0..).zip(carried.iter().copied()) {
                 let position = bind.transform_point3(stored).as_vec3();
                 influences.push(Influence { carrier, weight, position });
                 for (morph, target) in (first_morph..).zip(&targets) {
                     let by = bind.transform_vector3(displacement(target.as_ref(), vertex));
-                    offsets.push(Offset { morph, influence: number, by: by.as_vec3() });
+                    if by != DVec3::ZERO {
+                        offsets.push(Offset { morph, influence: number, by: by.as_vec3() });
+                    }
                 }
             }
+            spend((16 + carried.len()) * offsets.len())?;
             let at = posed_position(&influences, &offsets, pose);
             // Not finite if a part of it is not; by weight 0, only so.
             let is_finite = influences.iter().all(|influence| influence.position.is_finite())
@@ -242,6 +247,7 @@ fn moving_nodes(
     for channel in channels.filter(|channel| channel.property != Property::Weights) {
         moves[channel.node as usize] = true;
     }
+    let mut is_known = vec![false; document.root.skins.len()];
     for &node in drawn {
         let json = &document.root.nodes[node];
         let Some(mesh) = json.mesh.map(|mesh| mesh.value()) else { continue };
@@ -249,6 +255,9 @@ fn moving_nodes(
         let place = Place::Json(format!("nodes[{node}]"));
         if let Some(skin) = json.skin {
             let json_skin = object(&document.root.skins, skin.value(), "skins", &place)?;
+            if std::mem::replace(&mut is_known[skin.value()], true) {
+                continue;
+            }
             let place = Place::Json(format!("skins[{}]", skin.value()));
             for joint in &json_skin.joints {
                 object(&document.root.nodes, joint.value(), "nodes", &place)?;

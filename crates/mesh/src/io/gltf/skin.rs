@@ -50,6 +50,9 @@ impl<'a> Skinning<'a> {
             Some(accessor) => Some(Elements::matrices(document, accessor.value(), &place)?),
             None => None,
         };
+        // A matrix, a node and a carrier.
+        let joint_count = json.joints.len() as u64;
+        document.spend(64 * joint_count).map_err(|fault| fault.at(place.clone()))?;
         let mut joints = Vec::with_capacity(json.joints.len());
         for (joint, node) in json.joints.iter().enumerate() {
             object(&root.nodes, node.value(), "nodes", &place)?;
