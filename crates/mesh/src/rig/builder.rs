@@ -4,7 +4,7 @@ use glam::{DAffine3, Vec3};
 use rustc_hash::FxHashMap;
 
 use super::nodes::parents_first;
-use super::{Animation, Carrier, Local, Morph, Node, Pose, Rig};
+use super::{Animation, Carrier, Channel, Local, Morph, Node, Pose, Property, Rig};
 
 /// One carrier's part in a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,11 +73,11 @@ impl RigBuilder {
     /// An animation of the nodes. A node that is given by a matrix and that it moves becomes one of
     /// translation, rotation and scale, as nearly as that can be.
     pub fn animation(&mut self, animation: Animation) {
-        for channel in &animation.channels {
+        let moves_node = |channel: &&Channel| channel.property != Property::Weights;
+        for channel in animation.channels.iter().filter(moves_node) {
             let node = self.rig.nodes.get_mut(channel.node as usize);
             if let Some(rest @ &mut Local::Matrix(matrix)) = node.map(|node| &mut node.rest) {
-                let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
-                *rest = Local::Trs { translation, rotation, scale };
+                *rest = Local::nearest_trs(matrix);
             }
         }
         self.resting = None;

@@ -1,6 +1,6 @@
 //! The tree that carriers hang from.
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// A node: a space within that of its parent.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +36,33 @@ impl Local {
     /// The parent's own space.
     pub const IDENTITY: Self =
         Self::Trs { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE };
+
+    /// Translation, rotation and scale that make `matrix`, as nearly as they can: without its shear. Axes
+    /// that it flattens have scale 0 and are turned with the others.
+    pub(super) fn nearest_trs(matrix: DAffine3) -> Self {
+        let DAffine3 { matrix3: axes, translation } = matrix;
+        let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
+        let mut unit = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize_or_zero);
+        let is_flat = |axis: &DVec3| *axis == DVec3::ZERO;
+        for axis in 0..3 {
+            let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
+            if is_flat(&unit[axis]) {
+                let across = unit[next].cross(unit[last]).normalize_or_zero();
+                // With another one flat, any direction across what is left.
+                let left = if is_flat(&unit[next]) { unit[last] } else { unit[next] };
+                unit[axis] = match () {
+                    () if !is_flat(&across) => across,
+                    () if !is_flat(&left) => left.any_orthonormal_vector(),
+                    () => DVec3::X,
+                };
+            }
+        }
+        let mirror = DMat3::from_cols_array_2d(&unit.map(|axis| axis.to_array())).determinant();
+        let sign = 1f64.copysign(mirror);
+        let rotation = DQuat::from_mat3(&DMat3::from_cols(sign * unit[0], unit[1], unit[2]));
+        let scale = DVec3::new(sign * lengths[0], lengths[1], lengths[2]);
+        Self::Trs { translation, rotation, scale }
+    }
 
     /// The same as a transform. A rotation without length is none.
     pub fn to_affine(self) -> DAffine3 {
@@ -96,5 +123,27 @@ mod tests {
         };
         assert!(turned(1.0).distance(turned(0.25)) < 1e-15);
         assert_eq!(turned(0.0), DVec3::new(1.0, -1.0, 3.0));
+    }
+
+    #[test]
+    fn a_matrix_comes_apart_even_where_it_is_flat() {
+        let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 2.0);
+        for scale in [
+            [2.0, 3.0, 0.5],
+            [-2.0, 3.0, 0.5],
+            [2.0, -3.0, -0.5],
+            [0.0, 3.0, 0.5],
+            [2.0, 0.0, 0.5],
+            [2.0, 3.0, 0.0],
+            [0.0, 0.0, 0.5],
+            [0.0, 3.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0; 3],
+        ] {
+            let scale = DVec3::from_array(scale);
+            let matrix = DAffine3::from_scale_rotation_translation(scale, turn, DVec3::ONE);
+            let again = Local::nearest_trs(matrix).to_affine();
+            assert!(again.abs_diff_eq(matrix, 1e-12), "{scale}: {again} for {matrix}");
+        }
     }
 }
