@@ -179,3 +179,41 @@ fn channels_that_move_no_node_are_passed_over() {
         assert!(error.contains("invalid type: boolean"), "{error}");
     }
 }
+
+#[test]
+fn what_follows_joints_by_no_number_is_nowhere() {
+    for (weight, dropped) in [(f32::NAN, 1), (f32::INFINITY, 1), (0.0, 0)] {
+        let mut gltf = Gltf::default();
+        gltf.floats(&[&CORNERS[..], &[0.0, 0.0, 1.0]].concat(), "VEC3");
+        gltf.data(&[0; 16], 4, r#""componentType": 5121, "type": "VEC4""#);
+        let one = [1.0, 0.0, 0.0, 0.0];
+        gltf.floats(&[one, one, one, [weight, 0.0, 0.0, 0.0]].concat(), "VEC4");
+        gltf.shorts(&[0, 1, 2, 0, 1, 3]);
+        let bytes = gltf.glb(
+            r#""meshes": [{"primitives": [{"attributes":
+                {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}, "indices": 3}]}],
+            "nodes": [{"mesh": 0, "skin": 0}, {}], "skins": [{"joints": [1]}]"#,
+        );
+        let model = parse(Format::Gltf, &bytes).unwrap();
+        assert_eq!((model.dropped.vertices, model.dropped.faces), (dropped, dropped), "{weight}");
+    }
+}
+
+#[test]
+fn weights_leave_a_sheared_node_as_it_is() {
+    let mut gltf = Gltf::default();
+    gltf.floats(&CORNERS, "VEC3");
+    gltf.floats(&[0.0], "SCALAR");
+    gltf.floats(&[1.0], "SCALAR");
+    let bytes = gltf.glb(
+        r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "targets": [{}]}]}, {
+            "primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0, "matrix": [1,0,0,0, 1,1,0,0, 0,0,1,0, 0,0,0,1], "children": [1]},
+            {"mesh": 1, "rotation": [0, 0, 0, 1]}], "animations": [{"samplers": [
+            {"input": 1, "output": 2}], "channels": [
+            {"sampler": 0, "target": {"node": 0, "path": "weights"}}]}]"#,
+    );
+    let rig = rig(&bytes);
+    assert!(matches!(rig.nodes()[0].rest, drypoint_mesh::rig::Local::Matrix(_)));
+    assert_eq!(rig.position(2, &rig.pose_at(0, 0.0)), DVec3::new(1.0, 1.0, 0.0));
+}

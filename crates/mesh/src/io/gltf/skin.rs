@@ -74,7 +74,7 @@ impl<'a> Skinning<'a> {
     }
 
     /// Replaces `influences` by the joints that a vertex follows, each once, by index, with weights that
-    /// add up to 1. None if all its weights are 0.
+    /// add up to 1. None if all its weights are 0; a weight that is no number is that of them all.
     pub(super) fn influences(
         &self,
         vertex: usize,
@@ -104,7 +104,8 @@ impl<'a> Skinning<'a> {
         });
         // Weights are rounded, so they add up to 1 only nearly.
         let sum: f64 = influences.iter().map(|(_, weight)| weight).sum();
-        if sum > 0.0 {
+        // What is NaN stays so: the vertex is nowhere.
+        if sum > 0.0 || sum.is_nan() {
             influences.iter_mut().for_each(|(_, weight)| *weight /= sum);
         } else {
             influences.clear();
