@@ -59,8 +59,8 @@ impl RigidPart {
 ///
 /// A **rigid** vertex follows one carrier and is displaced by no morph target; a face is rigid if its
 /// vertices follow the same one, and an edge if both of its faces do. All others are loose. At an edge of
-/// three faces or more, each pair of faces is an edge of its own, and pairs of a part in which fewer meet
-/// than in the rig are loose too.
+/// three faces or more, each pair of faces is an edge of its own, and a pair of a part in which no third
+/// face meets it is loose too.
 #[derive(Clone, Debug)]
 pub struct Skin {
     adjacency: MeshAdjacency,
