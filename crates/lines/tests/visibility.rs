@@ -129,19 +129,20 @@ fn contours(mesh: &Mesh, adjacency: &MeshAdjacency, camera: &Camera) -> Vec<Edge
     contours
 }
 
-fn draw(mesh: &Mesh, camera: &Camera, options: LineOptions<'_>, params: &VisibilityParams) -> Drawing {
+fn draw(
+    mesh: &Mesh,
+    camera: &Camera,
+    options: LineOptions<'_>,
+    params: &VisibilityParams,
+) -> Drawing {
     let adjacency = MeshAdjacency::new(mesh);
     let contours = contours(mesh, &adjacency, camera);
     let segments = Segments::new(mesh, &adjacency, &contours, &options);
     Drawing::new(&Occluders::new(mesh, &adjacency), &segments, camera, params)
 }
 
-const EVERYTHING: LineOptions<'_> = LineOptions {
-    boundary: true,
-    crease_angle: Some(0.5),
-    materials: None,
-    intersections: None,
-};
+const EVERYTHING: LineOptions<'_> =
+    LineOptions { boundary: true, crease_angle: Some(0.5), materials: None, intersections: None };
 
 fn lengths(drawing: &Drawing) -> [f64; 2] {
     let sum = |length: fn(&drypoint_lines::Layer) -> f64| drawing.layers.iter().map(length).sum();

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::Format;
 #[cfg(feature = "ply")]
 use super::ply;
-#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
+#[cfg(any(feature = "obj", feature = "stl"))]
 use super::text::{Lines, Words};
 
 /// Bytes from which a text is judged, in this many places spread evenly over the file.
@@ -54,6 +54,7 @@ pub fn estimate(path: &Path) -> io::Result<Option<Estimate>> {
 }
 
 /// Vertices and triangles of one line of OBJ.
+#[cfg(feature = "obj")]
 fn statement(line: &[u8]) -> [u64; 2] {
     let mut words = Words(line);
     match words.next() {
@@ -80,6 +81,7 @@ fn stl(file: &mut File, bytes: u64) -> io::Result<[u64; 2]> {
 }
 
 /// Vertices and triangles of a text, from some of its lines.
+#[cfg(any(feature = "obj", feature = "stl"))]
 fn by_lines(
     file: &mut File,
     bytes: u64,

@@ -29,6 +29,7 @@
 #[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod content;
 mod error;
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 mod estimate;
 mod file;
 mod format;
@@ -51,6 +52,7 @@ use std::fs;
 use std::path::Path;
 
 pub use error::{Fault, Place, ReadError};
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 pub use estimate::{Estimate, estimate};
 pub use format::Format;
 pub use parts::{Dropped, Model, Part};

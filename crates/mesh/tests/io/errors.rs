@@ -251,10 +251,7 @@ fn bad_gltf_containers_are_refused() {
     // A picture of megabytes may be where it does not belong.
     let start = format!("byte 0: is no valid glTF: invalid type: string \"{}", "é".repeat(58));
     let end = "é".repeat(34) + "\", expected struct Asset at line 1 column 2011";
-    check(
-        format!(r#"{{"asset":"{}"}}"#, "é".repeat(1000)).as_bytes(),
-        &format!("{start}…{end}"),
-    );
+    check(format!(r#"{{"asset":"{}"}}"#, "é".repeat(1000)).as_bytes(), &format!("{start}…{end}"));
     check(br#"{"asset": {"version": "2.0"}}"#, "has no faces");
     let required =
         r#"{"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}"#;
