@@ -1,7 +1,7 @@
 //! The folder of a film: numbered frames, and a note of what they are, so that a film that was cut off
 //! goes on.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,8 @@ pub(crate) struct Folder {
     path: PathBuf,
     /// Digits of a frame's number, and the extension.
     names: (usize, String),
+    /// The folder itself, which nobody else may write frames into while it is locked.
+    lock: Option<File>,
 }
 
 impl Folder {
@@ -51,7 +53,7 @@ impl Folder {
                 }
             }
         }
-        Ok(Self { path: path.to_owned(), names: (0, String::new()) })
+        Ok(Self { path: path.to_owned(), names: (0, String::new()), lock: None })
     }
 
     /// As the user gave it.
@@ -72,6 +74,7 @@ impl Folder {
         if !self.path.is_dir() {
             fs::create_dir(&self.path).map_err(|error| self.fail(&error))?;
         }
+        self.lock()?;
         let noted = fs::read(&note).ok();
         let noted: Option<Manifest> = noted.and_then(|text| serde_json::from_slice(&text).ok());
         if noted.as_ref() == Some(manifest) && !overwrite {
@@ -92,6 +95,18 @@ impl Folder {
         text.push('\n');
         Output::File(note).write(text.as_bytes())?;
         Ok(vec![false; manifest.frames])
+    }
+
+    /// Keeps others from the folder until this is dropped, or the program ends in whatever way: frames of
+    /// two films would be mixed. Systems on which a folder cannot be locked go without.
+    fn lock(&mut self) -> Result<(), String> {
+        self.lock = File::open(&self.path).ok();
+        match self.lock.as_ref().map(File::try_lock) {
+            Some(Err(TryLockError::WouldBlock)) => {
+                Err(format!("{}: another drypoint is drawing frames into it", self.name()))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Writes a frame whole, or leaves what was there.

@@ -48,8 +48,8 @@ impl Segments {
     /// which is drawn are left out. Linear but for a sort of what is drawn, and a search in the runs
     /// of materials for each edge.
     ///
-    /// At a non-manifold edge a face and its own copy count as one: they are a contour from
-    /// everywhere, but a surface that is stored twice should look like one that is stored once.
+    /// A face and its own copy count as one: they are a contour from everywhere, but a surface that is
+    /// stored several times should look like one that is stored once. Where it ends, it has a boundary.
     ///
     /// Without `contours`, creases that are contours in this view are creases.
     ///
@@ -63,17 +63,19 @@ impl Segments {
     ) -> Self {
         let looked_at = LineOptions { intersections: None, ..*options } != LineOptions::default();
         let candidates = looked_at.then(|| adjacency.edge_ids()).into_iter().flatten();
-        let others =
-            candidates.filter_map(|edge| Some((class_of(mesh, adjacency, edge, options)?, edge)));
-        let is_copy = |edge: EdgeId| {
-            let wing = adjacency.wing(edge);
-            adjacency.class(edge) == EdgeClass::NonManifold && wing.left == wing.right
-        };
+        let copies = Copies::new(adjacency);
+        let others = candidates.filter_map(|edge| {
+            if copies.is_copy(edge) {
+                let is_end = options.boundary && copies.is_end(edge);
+                return is_end.then_some((LineClass::Boundary, edge));
+            }
+            Some((class_of(mesh, adjacency, edge, options)?, edge))
+        });
         let mut lines: Vec<_> = contours
             .iter()
+            .filter(|&&edge| !copies.is_copy(edge))
             .map(|&edge| (LineClass::Contour, edge))
             .chain(others)
-            .filter(|&(_, edge)| !is_copy(edge))
             .map(|(class, edge)| (adjacency.wing(edge).ends(), class, edge))
             .collect();
         lines.sort_unstable();
@@ -108,6 +110,42 @@ impl Segments {
             Some(point) => self.points[point as usize],
             None => mesh.position(end).as_dvec3(),
         }
+    }
+}
+
+/// Edges between a face and its own copy, which is how a surface that is stored several times ends.
+struct Copies<'a> {
+    adjacency: &'a MeshAdjacency,
+    /// Edges of three faces or more at which different faces meet, sorted.
+    joints: Vec<[u32; 2]>,
+}
+
+impl<'a> Copies<'a> {
+    /// Linear, where there is an edge of three faces or more.
+    fn new(adjacency: &'a MeshAdjacency) -> Self {
+        let mut copies = Self { adjacency, joints: Vec::new() };
+        if adjacency.report().non_manifold > 0 {
+            let is_joint = |&edge: &EdgeId| {
+                adjacency.class(edge) == EdgeClass::NonManifold && !copies.is_copy(edge)
+            };
+            let joints = adjacency.edge_ids().filter(is_joint);
+            copies.joints = joints.map(|edge| adjacency.wing(edge).ends()).collect();
+            copies.joints.sort_unstable();
+        }
+        copies
+    }
+
+    /// Whether a wing has one face on both sides, stored twice and wound alike, or among others.
+    fn is_copy(&self, edge: EdgeId) -> bool {
+        let wing = self.adjacency.wing(edge);
+        let class = self.adjacency.class(edge);
+        wing.left == wing.right
+            && [EdgeClass::NonManifold, EdgeClass::Inconsistent].contains(&class)
+    }
+
+    /// Whether no other face meets the copies there.
+    fn is_end(&self, edge: EdgeId) -> bool {
+        self.joints.binary_search(&self.adjacency.wing(edge).ends()).is_err()
     }
 }
 
@@ -185,6 +223,34 @@ mod tests {
         drawn.sort_unstable();
         drawn.dedup();
         assert_eq!(drawn.len(), count, "an edge is drawn twice");
+    }
+
+    #[test]
+    fn a_surface_that_is_stored_several_times_looks_like_one() {
+        let sheet = shapes::open_grid(18);
+        for mesh in [shapes::one_triangle(), shapes::cube(), sheet] {
+            let once = |options| {
+                let adjacency = MeshAdjacency::new(&mesh);
+                let mut contours = Vec::new();
+                let viewpoint = Viewpoint::at(DVec3::splat(9.0));
+                contour_edges(&mesh, &adjacency, viewpoint, EdgeFilter::All, &mut contours);
+                let segments = Segments::new(&mesh, &adjacency, &contours, &options);
+                let classes = [
+                    LineClass::Contour,
+                    LineClass::Boundary,
+                    LineClass::Crease,
+                    LineClass::Material,
+                ];
+                classes.map(|class| segments.of(class).len())
+            };
+            for times in 2..5 {
+                let triangles = vec![mesh.triangles(); times].concat();
+                let copied = Mesh::new(mesh.positions().to_vec(), triangles).unwrap();
+                for options in [ALL, LineOptions { boundary: false, ..ALL }] {
+                    check(&copied, options, once(options));
+                }
+            }
+        }
     }
 
     #[test]

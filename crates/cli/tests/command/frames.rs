@@ -205,3 +205,30 @@ fn ctrl_c_leaves_whole_frames_and_the_next_run_goes_on() {
     bench.succeed(&arguments("cut"));
     assert_eq!(frames(&bench, "cut"), whole);
 }
+
+#[test]
+fn two_films_do_not_mix() {
+    let bench = Bench::new();
+    for attempt in 0..4 {
+        let folder = format!("film-{attempt}");
+        let mut films = ["cube", "icosphere"].map(|shape| {
+            let size = ["--size", "60x60", "--turntable", "200"];
+            Command::new(env!("CARGO_BIN_EXE_drypoint"))
+                .args(["draw", &format!("shape:{shape}"), "--frames", &folder])
+                .args(size)
+                .current_dir(bench.path())
+                .stderr(std::process::Stdio::piped())
+                .spawn()
+                .unwrap()
+        });
+        let drew = films.each_mut().map(|film| film.wait().unwrap().success());
+        assert_ne!(drew[0], drew[1], "one of them is refused, before or after the other is done");
+        let title = if drew[0] { "<title>cube<" } else { "<title>icosphere<" };
+        let drawn = frames(&bench, &folder);
+        assert_eq!(drawn.len(), 201);
+        for (name, frame) in drawn.iter().filter(|(name, _)| name.ends_with(".svg")) {
+            let text = String::from_utf8_lossy(frame);
+            assert!(text.contains(title), "{name} of {folder}: {text:.200}");
+        }
+    }
+}

@@ -126,7 +126,7 @@ fn unfinished(bench: &Bench) -> Vec<std::path::PathBuf> {
 /// Waits until something was written to a file beside the output, or the program is done.
 fn wait_for_writing(bench: &Bench, child: &mut Child) {
     let is_begun = || {
-        let sizes = unfinished(bench).into_iter().map(|path| std::fs::metadata(path));
+        let sizes = unfinished(bench).into_iter().map(std::fs::metadata);
         sizes.flatten().any(|file| file.len() > 0)
     };
     while !is_begun() && child.try_wait().unwrap().is_none() {
