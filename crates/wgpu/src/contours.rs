@@ -200,7 +200,7 @@ impl Contours {
         &self.output.segments
     }
 
-    /// [`Arguments`], to draw or to dispatch with. Indirect and storage buffer.
+    /// [`Arguments`](drypoint_shaders::Arguments), to draw or to dispatch with. Indirect and storage buffer.
     pub fn arguments(&self) -> &wgpu::Buffer {
         &self.output.arguments
     }
