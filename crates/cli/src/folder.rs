@@ -2,7 +2,7 @@
 //! goes on.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{Read as _, Seek as _, SeekFrom};
+use std::io::{ErrorKind, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -72,7 +72,13 @@ impl Folder {
         self.names = (digits, manifest.format.clone());
         let note = self.path.join(NOTE);
         if !self.path.is_dir() {
-            fs::create_dir(&self.path).map_err(|error| self.fail(&error))?;
+            match fs::create_dir(&self.path) {
+                // Somebody else was faster, who may be drawing into it.
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    return Err(self.fail(&error));
+                }
+                _ => {}
+            }
         }
         self.lock()?;
         let noted = fs::read(&note).ok();
@@ -153,6 +159,6 @@ impl Folder {
     }
 
     fn fail(&self, error: &std::io::Error) -> String {
-        format!("{}: {error}", self.name())
+        format!("{}: cannot write: {error}", self.name())
     }
 }

@@ -127,17 +127,17 @@ pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
             vec![camera; plan.frames.len()]
         }
     };
+    let patches = match loaded {
+        Some(patches) => Some(draw::chosen(args, patches)?),
+        None if look.shown.is_some() => Some(surfaces.patches(args)?),
+        None => None,
+    };
     let manifest = Manifest {
         drypoint: env!("CARGO_PKG_VERSION").to_owned(),
         model: stem(&args.model),
         frames: plan.frames.len(),
         format: look.format.extension().to_owned(),
-        key: key(args, &look, &source, (&hashes, &cameras)),
-    };
-    let patches = match loaded {
-        Some(patches) => Some(draw::chosen(args, patches)?),
-        None if look.shown.is_some() => Some(surfaces.patches(args)?),
-        None => None,
+        key: key(args, &look, (&source, patches.as_ref()), (&hashes, &cameras)),
     };
     let kept = folder.open(&manifest, args.frames.overwrite)?;
     let film = Film { args, look, surfaces, plan: &plan, cameras, patches, folder, kept };
@@ -159,9 +159,7 @@ fn plan(args: &DrawArgs, source: &Source, has_patches: bool) -> Result<Plan, Str
     }
     let count = match (turns, plays) {
         (Some(turns), _) => turns,
-        // A last frame that rounding puts a hair behind the end is one.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        (None, Some(_)) => (duration * fps + 1e-6) as usize + 1,
+        (None, Some(_)) => frames_of(duration, fps),
         (None, None) if animation.is_some() => {
             return Err("--time: is one moment; leave it out, or add --turntable".to_owned());
         }
@@ -187,6 +185,15 @@ fn plan(args: &DrawArgs, source: &Source, has_patches: bool) -> Result<Plan, Str
         poses: (0..count).map(|frame| rig.pose_at(animation, time(frame))).collect(),
         frames: (0..count).map(|frame| Frame { pose: frame, turn: turn(frame) }).collect(),
     })
+}
+
+/// Frames from the begin of so many seconds to their end.
+fn frames_of(duration: f64, fps: f64) -> usize {
+    // Keys are f32: a last frame that their rounding puts a hair behind the end is one.
+    let steps = duration * fps * (1.0 + f64::from(f32::EPSILON)) + 1e-6;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let whole = steps as usize;
+    whole.saturating_add(1)
 }
 
 /// How frames look, checked before the model is read.
@@ -224,7 +231,7 @@ impl Look {
 fn key(
     args: &DrawArgs,
     look: &Look,
-    source: &Source,
+    (source, patches): (&Source, Option<&PatchSet>),
     (hashes, cameras): (&[u64], &[Camera]),
 ) -> String {
     let mut hash = Xxh3::new();
@@ -232,6 +239,9 @@ fn key(
     let names = (&source.model.parts, &source.model.materials, stem(&args.model));
     let version = env!("CARGO_PKG_VERSION");
     hash.update(format!("{:?}", (version, options, names, hashes, cameras)).as_bytes());
+    if let Some(patches) = patches {
+        hash.update(&patches.to_bytes());
+    }
     format!("{:032x}", hash.digest128())
 }
 
@@ -391,5 +401,25 @@ impl Film<'_> {
         tally.blank += usize::from(is_blank);
         tally.stage.set(tally.done as u64);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_frame_is_at_the_end() {
+        for fps in [24.0, 25.0, 30.0, 60.0] {
+            for steps in 0..2000u16 {
+                let exact = f64::from(steps) / fps;
+                // As files have it.
+                #[expect(clippy::cast_possible_truncation, reason = "what it is about")]
+                let stored = f64::from(exact as f32);
+                assert_eq!(frames_of(stored, fps), usize::from(steps) + 1, "{steps} at {fps}");
+                assert_eq!(frames_of(stored + 0.5 / fps, fps), usize::from(steps) + 1);
+            }
+        }
+        assert_eq!(frames_of(1e30, 1e3), usize::MAX);
     }
 }

@@ -81,8 +81,7 @@ fn gigabytes(bytes: u64) -> String {
     if gigabytes < 9.95 { format!("{gigabytes:.1}") } else { format!("{gigabytes:.0}") }
 }
 
-/// Bytes that the system could give now, or the group of processes that we belong to; `None` where it
-/// does not say.
+/// Bytes that the system could give now, or a container that we run in; `None` where it does not say.
 fn available() -> Option<u64> {
     let wanted = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(wanted);

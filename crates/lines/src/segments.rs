@@ -16,7 +16,7 @@ pub struct Segment {
     /// The faces that it lies in: those on the left and the right of an edge, of a boundary edge one
     /// of them twice; or the two that cross.
     pub faces: [u32; 2],
-    /// The edge; the first of its wings if it is non-manifold. `None` where faces cross.
+    /// The edge; of a non-manifold one the first wing of the class that it is drawn as. `None` where faces cross.
     pub edge: Option<EdgeId>,
 }
 

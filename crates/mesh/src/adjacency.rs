@@ -67,7 +67,7 @@ pub struct TopologyReport {
 
 impl MeshAdjacency {
     /// Pairs the half-edges of `mesh`. Linear but for one sort of the edges, on
-    /// all threads but for two passes over the triangles.
+    /// all threads but for some passes over the triangles.
     pub fn new(mesh: &Mesh) -> Self {
         Self::welded(mesh, weld_by_position(mesh.positions()))
     }

@@ -132,7 +132,7 @@ fn is_lost(device: &wgpu::Device) -> bool {
     pollster::block_on(scope.pop()).is_some() || is_lost
 }
 
-/// A buffer with `size` bytes, or at least 4, that may hold more than the device allows.
+/// A buffer with `size` bytes, or at least 16, that may hold more than the device allows.
 pub(crate) fn buffer(
     device: &wgpu::Device,
     what: &'static str,

@@ -10,7 +10,7 @@ use glam::{Vec3, Vec4};
 use wgpu::BufferUsages;
 
 use crate::Error;
-use crate::device::{beginning_with, buffer};
+use crate::device::{allow, beginning_with, buffer};
 use crate::extractor::Extractor;
 use crate::output::Output;
 use crate::rig_frame::{FrameBindings, Sections};
@@ -20,7 +20,7 @@ use crate::staging::Staging;
 /// What there is room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigCapacity {
-    /// Instances in a frame, each with a pose of its own. 80 bytes for each rigid part and one more, 64 for each
+    /// Instances in a frame, each with a pose of its own. 64 bytes for each rigid part and one more, 64 for each
     /// carrier, 4 for each morph target, 12 for each vertex and 4 for each face beside a loose edge.
     pub instances: u32,
     /// Segments in a frame, all instances together. 16 bytes each.
@@ -73,6 +73,9 @@ impl RigContours {
     ) -> Result<Self, Error> {
         let device = extractor.device();
         let limits = extractor.plan_limits();
+        // First, since dispatches count placements in 32 bits.
+        let least = Sections::new(&device.limits(), model, capacity.instances, 1).size;
+        allow(device, "the input of a frame", least, BufferUsages::STORAGE)?;
         let most_dispatches = most_dispatches(model, capacity, limits);
         let sections = Sections::new(&device.limits(), model, capacity.instances, most_dispatches);
         let counts = model.layout().counts;

@@ -211,6 +211,9 @@ fn poses_that_cannot_be_are_refused() {
         let still = contours.read_segments(&gpu.queue).expect("it fits");
         assert_eq!(still.len(), once[0].len());
     }
+    let many = RigCapacity { instances: u32::MAX, ..room };
+    let error = RigContours::new(&extractor, &model, many).expect_err("no binding holds it");
+    assert!(matches!(error, Error::TooLarge { .. }), "{error}");
     let tight = RigCapacity { segments: once[0].len() as u32 - 1, ..room };
     let mut contours = RigContours::new(&extractor, &model, tight).expect("there is memory");
     let found =

@@ -15,12 +15,12 @@
 //! the sign of U × V · d. Moving each corner by δ changes that by at most
 //!
 //! ```text
-//! (2 δ (|U| + |V|) + 4 δ²) |d|  +  w δ |U × V|
+//! (2 δ (|U| + |V|) + 4 δ²) (|d| + w δ)  +  w δ |U × V|
 //! ```
 //!
 //! Rounding v and w a is off by 4 u (|v| + w |a|) |U × V|, and differences, the cross and the dot product by
-//! 12 u |U| |V| |d|. The margin is the sum of all these. A face whose corners coincide in every pose, two of
-//! them being one vertex, is edge-on for certain.
+//! 12 u |U| |V| |d|. Beyond that, a GPU may take what is below 2⁻¹²⁶ for 0. The margin is the sum of all these. A
+//! face two of whose corners are one vertex is beside no edge, so nobody asks for its side.
 
 use drypoint_mesh::rig::{Rig, Skin};
 use glam::{DVec3, DVec4, Vec4};
@@ -33,6 +33,9 @@ use crate::edge::{is_normal_sure, is_side_sure, plane};
 
 /// What a shader may be off by in one operation.
 const UNIT: f64 = 1.0 / (1u32 << 23) as f64;
+
+/// More than a few numbers amount to that a GPU takes for 0, because they are below 2⁻¹²⁶.
+const FLUSHED: f64 = 1.0 / (1u128 << 120) as f64;
 
 /// A vertex in the frame of a pose.
 #[derive(Clone, Copy)]
@@ -113,7 +116,7 @@ impl RigLayout {
         let operations = 10.0 + influences.len() as f64 + 2.0 * offsets.len() as f64;
         let of_shader = operations * UNIT * reach.length();
         let of_definition = 0.5 * UNIT * position.length();
-        let doubt = of_shader.max(of_definition) * frame.scale;
+        let doubt = of_shader.max(of_definition) * frame.scale + FLUSHED;
         Posed { at: frame.point(position), doubt }
     }
 }
@@ -126,8 +129,10 @@ fn is_sure(corners: [Posed; 3], viewpoint: Vec4) -> bool {
     let [a, b, c] = corners.map(|corner| corner.at);
     let (ab, ac, d) = (b - a, c - a, v - w * a);
     let normal = ab.cross(ac);
-    let moved = (2.0 * doubt * (ab.length() + ac.length()) + 4.0 * doubt * doubt) * d.length();
+    // The normal, and with it the vector to the viewpoint.
+    let moved = (2.0 * doubt * (ab.length() + ac.length()) + 4.0 * doubt * doubt)
+        * (d.length() + w * doubt);
     let along = normal.length() * (w * doubt + 4.0 * UNIT * (v.length() + w * a.length()));
-    let rounded = 12.0 * UNIT * ab.length() * ac.length() * d.length();
+    let rounded = 12.0 * UNIT * ab.length() * ac.length() * d.length() + 4.0 * FLUSHED;
     normal.dot(d).abs() > moved + along + rounded
 }

@@ -130,6 +130,16 @@ fn frames_of_another_command_are_not_mixed_in() {
 }
 
 #[test]
+fn frames_through_other_patches_are_others() {
+    let bench = Bench::new();
+    let film = "draw a.patches --model shape:icosphere:320 --show patches --turntable 3 --frames a";
+    bench.succeed("patches shape:icosphere:320 -o a.patches --preset fast");
+    bench.succeed(film);
+    bench.succeed("patches shape:icosphere:320 -o a.patches --preset paper");
+    bench.fail(film, &["a: holds frames of another"]);
+}
+
+#[test]
 fn any_number_of_threads_draws_the_same() {
     let bench = Bench::new();
     moving::write(&bench);

@@ -197,7 +197,7 @@ fn of_two_programs_that_write_one_file_one_wins_whole() {
 fn a_folder_that_vanishes_is_told() {
     let bench = Bench::new();
     std::fs::create_dir(bench.path().join("folder")).unwrap();
-    let args = "patches shape:bumpy-sphere:20000 --preset fast -o folder/out.patches";
+    let args = "patches shape:bumpy-sphere:400000 --preset fast -o folder/out.patches";
     let child = program(&bench, args).spawn().unwrap();
     // Gone before it is looked for or while patches are built: it is told either way.
     std::thread::sleep(Duration::from_millis(20));

@@ -42,8 +42,10 @@ pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<
 fn in_pieces(bytes: &[u8], size: usize, options: &ReadOptions) -> Option<Content> {
     // Wherever a facet begins the state is the same: in a solid, and in no facet.
     let begins_facet = |_: &[u8], after: &[u8]| {
-        let start = after.trim_ascii_start();
-        start.get(..6).is_some_and(|word| word.eq_ignore_ascii_case(b"facet "))
+        // Of the next line alone, so that many empty ones are not looked through again and again.
+        let line = &after[..memchr::memchr(b'\n', after).unwrap_or(after.len())];
+        let word = line.trim_ascii_start();
+        word.get(..6).is_some_and(|word| word.eq_ignore_ascii_case(b"facet "))
     };
     let pieces = text::pieces(bytes, size, begins_facet);
     let last = pieces.len() - 1;
@@ -76,9 +78,10 @@ fn with_all_triangles(pieces: Vec<Content>) -> Content {
 
 /// Three of so many vertices each in a row.
 fn triangles(vertex_count: usize) -> Faces {
-    let count = u32::try_from(vertex_count).unwrap_or(u32::MAX) / 3;
-    let corners = |facet: u32| [3 * facet, 3 * facet + 1, 3 * facet + 2];
-    Faces::of_triangles((0..count).into_par_iter().map(corners).collect())
+    // More than fit are refused by their number.
+    let corner = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
+    let corners = |facet: usize| [0, 1, 2].map(|i| corner(3 * facet + i));
+    Faces::of_triangles((0..vertex_count / 3).into_par_iter().map(corners).collect())
 }
 
 fn from_binary(bytes: &[u8], options: &ReadOptions) -> Result<Content, ReadError> {

@@ -166,6 +166,15 @@ fn stl_facets_keep_their_own_vertices() {
 }
 
 #[test]
+fn empty_lines_of_an_stl_are_looked_through_once() {
+    // Above the size from which a text is read in pieces. Once for each of them would take hours.
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let text = format!("solid a\n{facet}{}endsolid a\n", "\n".repeat(4_000_000));
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    check(Format::Stl, text.as_bytes(), &corners, &[[0, 1, 2]]);
+}
+
+#[test]
 fn stl_agrees_with_another_reader() {
     let corners: Vec<[f32; 3]> =
         (0..30u8).map(|i| [f32::from(i).sin(), f32::from(i), 0.1]).collect();

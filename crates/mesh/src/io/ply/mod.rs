@@ -33,7 +33,7 @@ pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<
 /// header says, but no more than there are bytes for.
 pub(super) fn estimate(start: &[u8], bytes: u64) -> Option<[u64; 2]> {
     let (header, lines) = header::parse(start).ok()?;
-    let mut left = bytes - (start.len() - lines.rest().len()) as u64;
+    let mut left = bytes.saturating_sub((start.len() - lines.rest().len()) as u64);
     let is_text = header.encoding == Encoding::Ascii;
     let (mut vertices, mut triangles) = (0, 0);
     for table in header.tables() {

@@ -68,7 +68,12 @@ impl<'a> Rows<'a> {
         let rows = usize::try_from(piece.rows).map_or(most, |rows| rows.min(most));
         match piece.element.kind {
             Kind::Vertex { .. } => self.content.positions.reserve(rows),
-            Kind::Face { .. } => self.content.faces.reserve(rows),
+            Kind::Face { list } => {
+                // Three corners each, or there are fewer of them.
+                let corners = 3 * piece.element.properties[list].value.size();
+                let least = piece.element.least_row_size() + corners;
+                self.content.faces.reserve(rows.min(piece.bytes.len() / least));
+            }
             Kind::Strips { .. } | Kind::Other => {}
         }
         let mut values = Binary::new(file, piece.bytes, self.header.encoding);
