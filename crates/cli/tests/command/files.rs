@@ -18,7 +18,11 @@ fn bad_files_say_what_is_wrong_and_where() {
         ("garbage.glb", b"\x93\x00\xff\xfe\x01 garbage\x00\n\x07", &[]),
         ("range.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", &["line 4", "9"]),
         ("nan.obj", b"v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n", &["faces left out: 1", "no finite"]),
-        ("inf.obj", b"v 0 0 0\nv 1 0 0\nv 0 1e999 0\nf 1 2 3\n", &["faces left out: 1", "no finite"]),
+        (
+            "inf.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1e999 0\nf 1 2 3\n",
+            &["faces left out: 1", "no finite"],
+        ),
         ("faceless.obj", b"v 0 0 0\nv 1 0 0\n", &["no faces"]),
         ("really.ply", CORNER.as_bytes(), &[]),
         ("mesh.xyz", CORNER.as_bytes(), &["xyz"]),
