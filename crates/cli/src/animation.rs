@@ -87,3 +87,32 @@ impl Source {
         Ok(Self { name: self.name.clone(), model, is_posed: true })
     }
 }
+
+/// Frames from the begin of so many seconds to their end.
+pub(crate) fn frames_of(duration: f64, fps: f64) -> usize {
+    // Keys are f32: a last frame that their rounding puts a hair behind the end is one.
+    let steps = duration * fps * (1.0 + f64::from(f32::EPSILON)) + 1e-6;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let whole = steps as usize;
+    whole.saturating_add(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_frame_is_at_the_end() {
+        for fps in [24.0, 25.0, 30.0, 60.0] {
+            for steps in 0..2000u16 {
+                let exact = f64::from(steps) / fps;
+                // As files have it.
+                #[expect(clippy::cast_possible_truncation, reason = "what it is about")]
+                let stored = f64::from(exact as f32);
+                assert_eq!(frames_of(stored, fps), usize::from(steps) + 1, "{steps} at {fps}");
+                assert_eq!(frames_of(stored + 0.5 / fps, fps), usize::from(steps) + 1);
+            }
+        }
+        assert_eq!(frames_of(1e30, 1e3), usize::MAX);
+    }
+}

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use xxhash_rust::xxh3::Xxh3;
 
+use crate::animation;
 use crate::args::{DrawArgs, number};
 use crate::draw::{self, Format, Scene, Surface};
 use crate::folder::{Folder, Manifest};
@@ -159,7 +160,7 @@ fn plan(args: &DrawArgs, source: &Source, has_patches: bool) -> Result<Plan, Str
     }
     let count = match (turns, plays) {
         (Some(turns), _) => turns,
-        (None, Some(_)) => frames_of(duration, fps),
+        (None, Some(_)) => animation::frames_of(duration, fps),
         (None, None) if animation.is_some() => {
             return Err("--time: is one moment; leave it out, or add --turntable".to_owned());
         }
@@ -185,15 +186,6 @@ fn plan(args: &DrawArgs, source: &Source, has_patches: bool) -> Result<Plan, Str
         poses: (0..count).map(|frame| rig.pose_at(animation, time(frame))).collect(),
         frames: (0..count).map(|frame| Frame { pose: frame, turn: turn(frame) }).collect(),
     })
-}
-
-/// Frames from the begin of so many seconds to their end.
-fn frames_of(duration: f64, fps: f64) -> usize {
-    // Keys are f32: a last frame that their rounding puts a hair behind the end is one.
-    let steps = duration * fps * (1.0 + f64::from(f32::EPSILON)) + 1e-6;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-    let whole = steps as usize;
-    whole.saturating_add(1)
 }
 
 /// How frames look, checked before the model is read.
@@ -401,25 +393,5 @@ impl Film<'_> {
         tally.blank += usize::from(is_blank);
         tally.stage.set(tally.done as u64);
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_last_frame_is_at_the_end() {
-        for fps in [24.0, 25.0, 30.0, 60.0] {
-            for steps in 0..2000u16 {
-                let exact = f64::from(steps) / fps;
-                // As files have it.
-                #[expect(clippy::cast_possible_truncation, reason = "what it is about")]
-                let stored = f64::from(exact as f32);
-                assert_eq!(frames_of(stored, fps), usize::from(steps) + 1, "{steps} at {fps}");
-                assert_eq!(frames_of(stored + 0.5 / fps, fps), usize::from(steps) + 1);
-            }
-        }
-        assert_eq!(frames_of(1e30, 1e3), usize::MAX);
     }
 }
