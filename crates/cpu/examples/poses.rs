@@ -1,7 +1,7 @@
 //! Extracts contours of a glTF model at times of its animations, and says what patches save.
 //!
 //! ```sh
-//! cargo run --release -p drypoint-cpu --example rigged -- robot.glb
+//! cargo run --release -p drypoint-cpu --example poses -- robot.glb
 //! ```
 //!
 //! Each animation is looked at 12 times in its course, from each of 21 viewpoints: 7 directions, at 5, 10 and
