@@ -17,11 +17,12 @@
 //!   to either side, and is free if one side is: an outline seen in exact alignment with another,
 //!   as in the front view of a box, is drawn.
 
+use std::collections::HashSet;
 use std::ops::Range;
 use std::time::Duration;
 
 use drypoint_mesh::{Mesh, MeshAdjacency, Viewpoint};
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -67,14 +68,24 @@ impl<'a> Occluders<'a> {
     /// Builds the hierarchy, single-threaded: about 0.3 µs and 120 bytes a triangle.
     pub fn new(mesh: &'a Mesh, adjacency: &'a MeshAdjacency) -> Self {
         let representatives = adjacency.representatives();
-        let solid: Vec<u32> = (0u32..)
+        let mut solid: Vec<u32> = (0u32..)
             .zip(mesh.triangles())
             .map(|(triangle, _)| triangle)
             .filter(|&triangle| !adjacency.is_without_area(triangle))
             .collect();
+        if adjacency.report().non_manifold > 0 {
+            // A copy hides what the first one does, and there may be any number.
+            let mut known = HashSet::with_capacity(solid.len());
+            solid.retain(|&triangle| {
+                let corners = mesh.triangles()[triangle as usize];
+                let mut corners = corners.map(|v| representatives[v as usize]);
+                corners.sort_unstable();
+                known.insert(corners)
+            });
+        }
         let bounds = mesh.bounds();
         let largest = bounds.map_or(0.0, |b| b.min.abs().max(b.max.abs()).max_element());
-        let scale = power_of_two_near(1.0 / f64::from(largest));
+        let scale = power_of_two_near(LARGEST / f64::from(largest));
         let boxes: Vec<Aabb> = solid.iter().map(|&t| box_around(mesh, t, scale)).collect();
         // Rays are few: better hierarchies cost the dragon 0.2 s more and save nothing.
         let mut unread = Duration::ZERO;
@@ -319,8 +330,23 @@ fn power_of_two_near(x: f64) -> f64 {
 }
 
 fn box_around(mesh: &Mesh, triangle: u32, scale: f64) -> Aabb {
-    let [a, b, c] = mesh.corners(triangle).map(|p| Vec3A::from((p.as_dvec3() * scale).as_vec3()));
-    Aabb::new(a.min(b).min(c), a.max(b).max(c))
+    uneven_box(mesh.corners(triangle).map(|p| (p.as_dvec3() * scale).as_vec3()), triangle)
+}
+
+/// The size of the largest coordinate in a hierarchy: of boxes the largest has an area that f32 holds, times the
+/// number of all, and so have those that are 2^112 times as small.
+pub(crate) const LARGEST: f64 = (1u64 << 50) as f64;
+
+/// The box around three points, wider by up to 7 steps of f32, so that equal triangles in a row have unequal
+/// boxes. Of equal ones the hierarchy joins one pair after the other, and becomes a chain that is as deep as the
+/// row is long.
+pub(crate) fn uneven_box(corners: [Vec3; 3], triangle: u32) -> Aabb {
+    let [a, b, c] = corners.map(Vec3A::from);
+    let max = a.max(b).max(c);
+    // Fibonacci hashing: Knuth, The Art of Computer Programming 3, §6.4.
+    #[expect(clippy::cast_precision_loss, reason = "three bits")]
+    let steps = (triangle.wrapping_mul(0x9e37_79b9) >> 29) as f32;
+    Aabb::new(a.min(b).min(c), max + steps * f32::EPSILON * max.abs())
 }
 
 impl Occluders<'_> {
@@ -358,5 +384,57 @@ impl Occluders<'_> {
                 return;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How deep the hierarchy of a mesh is, and how many triangles it holds.
+    fn shape_of(mesh: &Mesh) -> [usize; 2] {
+        let adjacency = MeshAdjacency::new(mesh);
+        let occluders = Occluders::new(mesh, &adjacency);
+        let (mut deepest, mut open) = (0, vec![(0, 1)]);
+        while let Some((index, depth)) = open.pop() {
+            let node = &occluders.bvh.nodes[index];
+            deepest = deepest.max(depth);
+            if !node.is_leaf() {
+                let first = node.first_index as usize;
+                open.extend([first, first + 1].map(|child| (child, depth + 1)));
+            }
+        }
+        [deepest, occluders.triangles.len()]
+    }
+
+    /// Equal triangles, apart from each other by one unit; then `more` corners.
+    fn fence(count: u32, unit: f32, more: &[Vec3]) -> Mesh {
+        #[expect(clippy::cast_precision_loss, reason = "whole numbers that f32 has")]
+        let at = |i: u32| unit * (i as f32) * Vec3::X;
+        let slat = |i| [at(i), at(i) + unit * Vec3::Y, at(i) + unit * Vec3::Z];
+        let corners: Vec<Vec3> = (0..count).flat_map(slat).chain(more.iter().copied()).collect();
+        let triangles = (0..).take(corners.len() / 3).map(|i: u32| [3 * i, 3 * i + 1, 3 * i + 2]);
+        let triangles = triangles.collect();
+        Mesh::new(corners, triangles).unwrap()
+    }
+
+    #[test]
+    fn rows_of_equal_triangles_make_no_chain() {
+        let stray = [1e20 * Vec3::X, 1e20 * Vec3::Y, 1e20 * Vec3::Z];
+        for mesh in [fence(1 << 14, 1.0, &[]), fence(1 << 14, 1e-8, &stray)] {
+            let [depth, count] = shape_of(&mesh);
+            assert_eq!(count, mesh.triangles().len());
+            // 15 would be balanced.
+            assert!(depth < 60, "{depth} levels");
+        }
+    }
+
+    #[test]
+    fn copies_are_held_once() {
+        let one = fence(3, 1.0, &[]);
+        let mut triangles = vec![one.triangles(); 50].concat();
+        triangles.iter_mut().step_by(2).for_each(|triangle| triangle.rotate_left(1));
+        let copied = Mesh::new(one.positions().to_vec(), triangles).unwrap();
+        assert_eq!(shape_of(&copied)[1], 3);
     }
 }

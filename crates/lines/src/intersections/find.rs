@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use drypoint_mesh::{Mesh, MeshAdjacency, weld_by_position};
-use glam::{DVec3, Vec3A};
+use glam::DVec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -15,6 +15,7 @@ use super::meeting::{Face, Meeting, Spot, meet};
 use super::passing::Apexes;
 use super::{End, Intersections, Piece};
 use crate::disjoint::DisjointSets;
+use crate::occluders::{LARGEST, uneven_box};
 
 impl Intersections {
     /// Finds where faces cross, on all threads, through a hierarchy of boxes, by exact predicates. The
@@ -83,17 +84,15 @@ impl Faces<'_> {
 
     /// The box of a face, in units of `scale`. Rounding keeps order, so boxes that touch still do.
     fn bounds(&self, id: u32, scale: f64) -> Aabb {
-        let [a, b, c] = self.face(id).points.map(|p| Vec3A::from((p * scale).as_vec3()));
-        Aabb::new(a.min(b).min(c), a.max(b).max(c))
+        uneven_box(self.face(id).points.map(|p| (p * scale).as_vec3()), id)
     }
 }
 
 /// Every pair of faces that meets in a segment, in order.
 fn meetings(faces: Faces<'_>, adjacency: &MeshAdjacency) -> Vec<Meeting> {
     let distinct = faces.distinct(adjacency);
-    let size = faces.mesh.bounds().map_or(1.0, |b| b.size().max_element().max(f64::MIN_POSITIVE));
-    // Areas of boxes must fit an f32.
-    let scale = 1.0 / size;
+    let largest = faces.mesh.bounds().map_or(1.0, |b| b.min.abs().max(b.max.abs()).max_element());
+    let scale = LARGEST / f64::from(largest).max(f64::MIN_POSITIVE);
     let boxes: Vec<Aabb> = distinct.par_iter().map(|&id| faces.bounds(id, scale)).collect();
     let mut unread = Duration::ZERO;
     let bvh = build_bvh2(&boxes, BvhBuildParams::fastest_build(), &mut unread);

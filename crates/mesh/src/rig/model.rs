@@ -152,7 +152,7 @@ impl Rig {
     }
 
     /// Where it is at a time of an animation, in seconds: before its first key and after its last it
-    /// stays. Linear in nodes and channels.
+    /// stays. Linear in nodes and channels, and in morph targets for each channel of weights.
     ///
     /// # Panics
     /// If there is no such animation.
