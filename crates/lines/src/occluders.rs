@@ -338,8 +338,8 @@ fn box_around(mesh: &Mesh, triangle: u32, scale: f64) -> Aabb {
 pub(crate) const LARGEST: f64 = (1u64 << 50) as f64;
 
 /// The box around three points, wider by up to 7 steps of f32, so that equal triangles in a row have unequal
-/// boxes. Of equal ones the hierarchy joins one pair after the other, and becomes a chain that is as deep as the
-/// row is long.
+/// boxes. Where all neighbours are as good as each other, the hierarchy joins one pair in each of as many passes
+/// as there are triangles.
 pub(crate) fn uneven_box(corners: [Vec3; 3], triangle: u32) -> Aabb {
     let [a, b, c] = corners.map(Vec3A::from);
     let max = a.max(b).max(c);
@@ -391,22 +391,6 @@ impl Occluders<'_> {
 mod tests {
     use super::*;
 
-    /// How deep the hierarchy of a mesh is, and how many triangles it holds.
-    fn shape_of(mesh: &Mesh) -> [usize; 2] {
-        let adjacency = MeshAdjacency::new(mesh);
-        let occluders = Occluders::new(mesh, &adjacency);
-        let (mut deepest, mut open) = (0, vec![(0, 1)]);
-        while let Some((index, depth)) = open.pop() {
-            let node = &occluders.bvh.nodes[index];
-            deepest = deepest.max(depth);
-            if !node.is_leaf() {
-                let first = node.first_index as usize;
-                open.extend([first, first + 1].map(|child| (child, depth + 1)));
-            }
-        }
-        [deepest, occluders.triangles.len()]
-    }
-
     /// Equal triangles, apart from each other by one unit; then `more` corners.
     fn fence(count: u32, unit: f32, more: &[Vec3]) -> Mesh {
         #[expect(clippy::cast_precision_loss, reason = "whole numbers that f32 has")]
@@ -418,15 +402,34 @@ mod tests {
         Mesh::new(corners, triangles).unwrap()
     }
 
+    /// Boxes of the leaves.
+    fn leaves(mesh: &Mesh) -> Vec<Aabb> {
+        let adjacency = MeshAdjacency::new(mesh);
+        let occluders = Occluders::new(mesh, &adjacency);
+        let nodes = occluders.bvh.nodes.iter();
+        nodes.filter(|node| node.is_leaf()).map(|node| *node.aabb()).collect()
+    }
+
     #[test]
-    fn rows_of_equal_triangles_make_no_chain() {
+    fn pairs_are_found_everywhere_in_a_row_of_equal_triangles() {
+        let mut boxes = leaves(&fence(1 << 14, 1.0, &[]));
+        boxes.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
+        assert_eq!(boxes.len(), 1 << 14);
+        let costs: Vec<f32> =
+            boxes.windows(2).map(|pair| pair[0].union(&pair[1]).half_area()).collect();
+        // Pairs that are better than those on either side are joined in one pass.
+        let is_best = |i: &usize| costs[i - 1] > costs[*i] && costs[*i] < costs[i + 1];
+        let best: Vec<usize> = (1..costs.len() - 1).filter(is_best).collect();
+        let longest = best.windows(2).map(|pair| pair[1] - pair[0]).max();
+        assert!(longest.is_some_and(|longest| longest < 16), "{longest:?}");
+    }
+
+    #[test]
+    fn a_stray_triangle_leaves_the_others_their_boxes() {
         let stray = [1e20 * Vec3::X, 1e20 * Vec3::Y, 1e20 * Vec3::Z];
-        for mesh in [fence(1 << 14, 1.0, &[]), fence(1 << 14, 1e-8, &stray)] {
-            let [depth, count] = shape_of(&mesh);
-            assert_eq!(count, mesh.triangles().len());
-            // 15 would be balanced.
-            assert!(depth < 60, "{depth} levels");
-        }
+        let boxes = leaves(&fence(1000, 1e-8, &stray));
+        assert_eq!(boxes.len(), 1001);
+        assert!(boxes.iter().all(|leaf| leaf.half_area() > 0.0 && leaf.half_area().is_finite()));
     }
 
     #[test]
@@ -435,6 +438,6 @@ mod tests {
         let mut triangles = vec![one.triangles(); 50].concat();
         triangles.iter_mut().step_by(2).for_each(|triangle| triangle.rotate_left(1));
         let copied = Mesh::new(one.positions().to_vec(), triangles).unwrap();
-        assert_eq!(shape_of(&copied)[1], 3);
+        assert_eq!(leaves(&copied).len(), 3);
     }
 }
