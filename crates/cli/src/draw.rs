@@ -93,7 +93,9 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
         let _stage = Stage::new("finding what is visible");
         scene.draw(&surface, (patches.as_ref(), shown), &args.lines)
     };
-    if is_blank(&drawing) {
+    if drawing.layers.iter().all(|layer| layer.segments == 0) && drawing.areas.is_empty() {
+        tell(&format!("drypoint: {} has no such line from here", source.name));
+    } else if is_blank(&drawing) {
         tell(&format!("drypoint: no line of {} is visible on the page", source.name));
     }
     let picture = {
@@ -104,7 +106,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     if args.json {
         let patches = patches.as_ref().filter(|_| shown.is_some());
         let patches = patches.map(|patches| show::counts(patches, camera.viewpoint()));
-        let [parts, materials] = lines::lengths(&drawing).map_or([None, None], |l| l.map(Some));
+        let lengths = surface.lines.names_owners(&source).then(|| lines::lengths(&drawing));
+        let [parts, materials] = lengths.map_or([None, None], |lengths| lengths.map(Some));
         print_json(&Report { lines: lines::drawn(&drawing), parts, materials, patches })?;
     }
     output.write(&picture)?;

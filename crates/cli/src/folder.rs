@@ -51,6 +51,7 @@ impl Folder {
                 if path.file_name().is_none() || parent.is_some_and(|parent| !parent.is_dir()) {
                     return refused("the folder that it is to be in does not exist");
                 }
+                Output::open(path)?;
             }
         }
         Ok(Self { path: path.to_owned(), names: (0, String::new()), lock: None })

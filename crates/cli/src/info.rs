@@ -1,13 +1,15 @@
 //! `drypoint info`: what a mesh is made of.
 
-use drypoint_mesh::Aabb;
+use std::collections::BTreeMap;
+
 use drypoint_mesh::rig::{Animation, Rig, Skin};
+use drypoint_mesh::{Aabb, io};
 use glam::Vec3;
 use serde::Serialize;
 
 use crate::args::InfoArgs;
 use crate::memory::Work;
-use crate::output::{print, print_json};
+use crate::output::{harmless, print, print_json};
 use crate::source::Source;
 
 /// The topology report, in the shape that scripts read.
@@ -28,6 +30,8 @@ struct Report<'a> {
     concave: usize,
     bounds: Bounds,
     parts: Vec<Part<'a>>,
+    /// Those that have a name, sorted.
+    materials: Vec<Part<'a>>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     motion: Option<Motion<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,6 +66,7 @@ struct Bounds {
     max: [f32; 3],
 }
 
+/// A part or a material.
 #[derive(Debug, Serialize)]
 struct Part<'a> {
     name: &'a str,
@@ -93,11 +98,21 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), String> {
         concave: found.concave,
         bounds: Bounds { min: min.to_array(), max: max.to_array() },
         parts: parts.map(|p| Part { name: &p.name, faces: p.triangles.len() }).collect(),
+        materials: materials(&source.model),
         positions: args
             .vertices
             .then(|| source.mesh().positions().iter().map(Vec3::to_array).collect()),
     };
     if args.json { print_json(&report) } else { print(describe(&source.name, &report).as_bytes()) }
+}
+
+/// A material may be that of several parts.
+fn materials(model: &io::Model) -> Vec<Part<'_>> {
+    let mut found: BTreeMap<&str, usize> = BTreeMap::new();
+    for run in model.materials.iter().filter(|run| !run.name.is_empty()) {
+        *found.entry(&run.name).or_default() += run.triangles.len();
+    }
+    found.into_iter().map(|(name, faces)| Part { name, faces }).collect()
 }
 
 fn motion<'a>(name: &str, rig: &'a Rig) -> Result<Motion<'a>, String> {
@@ -134,7 +149,7 @@ fn describe(name: &str, report: &Report) -> String {
         ("boundary edges", report.boundary, "one face"),
         ("non-manifold edges", report.non_manifold, "three faces or more"),
     ];
-    let mut text = format!("{name}\n");
+    let mut text = format!("{}\n", harmless(name));
     for (label, count, note) in rows {
         text += format!("  {label:<20}{count:>10}  {note}").trim_end();
         text += "\n";
@@ -143,8 +158,10 @@ fn describe(name: &str, report: &Report) -> String {
     if let Some(motion) = &report.motion {
         text += &describe_motion(motion);
     }
-    for part in &report.parts {
-        text += &format!("  part                {} ({} faces)\n", part.name, part.faces);
+    for (label, all) in [("part", &report.parts), ("material", &report.materials)] {
+        for Part { name, faces } in all {
+            text += &format!("  {label:<20}{} ({faces} faces)\n", harmless(name));
+        }
     }
     for (index, [x, y, z]) in report.positions.iter().flatten().enumerate() {
         text += &format!("  vertex {index}: {x} {y} {z}\n");
@@ -164,6 +181,7 @@ fn describe_motion(motion: &Motion) -> String {
     let percent = 100.0 * motion.rigid_share;
     text += &format!("  rigid edges         {percent:>8.1} %  between faces of one part\n");
     for (number, Moves { name, duration, channels }) in motion.animations.iter().enumerate() {
+        let name = harmless(name);
         text += &format!("  animation {number:<10}{name} ({duration:.3} s, {channels} channels)\n");
     }
     text

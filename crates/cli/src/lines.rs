@@ -131,7 +131,7 @@ impl Lines {
     }
 
     /// Leaves classes out of a drawing that are not asked for, and names the parts and materials that
-    /// lines belong to, if there is more than one part to tell apart, or a name of a material.
+    /// lines belong to, if there are any to name.
     pub(crate) fn finish(
         &self,
         drawing: &mut Drawing,
@@ -140,9 +140,14 @@ impl Lines {
         args: &LineArgs,
     ) {
         drawing.layers.retain(|layer| args.holds(layer.class));
-        if source.model.parts.len() > 1 || self.materials.names().len() > 1 {
+        if self.names_owners(source) {
             drawing.label(source.mesh(), viewpoint, &self.parts, &self.materials);
         }
+    }
+
+    /// Whether there are parts to tell apart, or names of materials.
+    pub(crate) fn names_owners(&self, source: &Source) -> bool {
+        source.model.parts.len() > 1 || self.materials.names().len() > 1
     }
 }
 
@@ -171,12 +176,12 @@ pub(crate) fn drawn(drawing: &Drawing) -> BTreeMap<&'static str, Drawn> {
 /// By the name of a part or a material the pixels of visible line of each class that belong to it.
 pub(crate) type Lengths = BTreeMap<String, BTreeMap<&'static str, f64>>;
 
-/// The visible lines of each part and of each material, if the drawing says which belong to which.
-pub(crate) fn lengths(drawing: &Drawing) -> Option<[Lengths; 2]> {
+/// The visible lines of each part and of each material, as far as the drawing says which belong to which.
+pub(crate) fn lengths(drawing: &Drawing) -> [Lengths; 2] {
     let (mut of_parts, mut of_materials) = (Lengths::new(), Lengths::new());
     for layer in &drawing.layers {
         for run in layer.runs.iter().filter(|run| run.visible) {
-            let label = drawing.label_of(run)?;
+            let Some(label) = drawing.label_of(run) else { continue };
             for (lengths, name) in
                 [(&mut of_parts, &label.part), (&mut of_materials, &label.material)]
             {
@@ -185,5 +190,5 @@ pub(crate) fn lengths(drawing: &Drawing) -> Option<[Lengths; 2]> {
             }
         }
     }
-    (!drawing.labels.is_empty()).then_some([of_parts, of_materials])
+    [of_parts, of_materials]
 }

@@ -81,7 +81,8 @@ fn gigabytes(bytes: u64) -> String {
     if gigabytes < 9.95 { format!("{gigabytes:.1}") } else { format!("{gigabytes:.0}") }
 }
 
-/// Bytes that the system could give now, or a container that we run in; `None` where it does not say.
+/// Bytes that the system could give now, or a container that we run in, but no more than the process may
+/// have at all; `None` where it does not say.
 fn available() -> Option<u64> {
     let wanted = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(wanted);
@@ -89,7 +90,20 @@ fn available() -> Option<u64> {
     // What the group has of the system's cache it can give back, so that only the rest counts.
     let of_group = |limits: sysinfo::CGroupLimits| limits.total_memory.saturating_sub(limits.rss);
     let free = system.cgroup_limits().map_or(free, |limits| free.min(of_group(limits)));
-    (free > 0).then_some(free)
+    let free = (free > 0).then_some(free);
+    free.into_iter().chain(address_space()).min()
+}
+
+/// Bytes that `ulimit -v` leaves the process, if it does.
+#[cfg(target_os = "linux")]
+fn address_space() -> Option<u64> {
+    rustix::process::getrlimit(rustix::process::Resource::As).current
+}
+
+/// Elsewhere a limit is set by other means, or binds nobody.
+#[cfg(not(target_os = "linux"))]
+fn address_space() -> Option<u64> {
+    None
 }
 
 #[cfg(test)]

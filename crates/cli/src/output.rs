@@ -105,7 +105,13 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), String> {
 
 /// Prints one line to standard error, whatever line breaks a file's name may hold.
 pub(crate) fn tell(message: &str) {
-    eprintln!("{}", message.replace(['\n', '\r'], " "));
+    eprintln!("{}", harmless(&message.replace(['\n', '\r'], " ")));
+}
+
+/// A text with control characters spelled out: a name in a file must not clear a terminal.
+pub(crate) fn harmless(text: &str) -> String {
+    let spell = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
+    text.chars().map(spell).collect()
 }
 
 /// Prints a line of JSON.

@@ -3,9 +3,10 @@
 use std::hash::BuildHasher;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use foldhash::fast::RandomState;
+use foldhash::{HashMap, HashMapExt};
 use glam::Vec3;
 use rayon::prelude::*;
-use rustc_hash::{FxBuildHasher, FxHashMap};
 
 /// Maps that vertices are shared out to. Each of a million vertices fits a processor's cache, and is four
 /// times as fast for it as one of all.
@@ -18,6 +19,7 @@ const SHARE: usize = 1 << 14;
 ///
 /// OBJ and glTF files split vertices where texture coordinates or normals jump, and STL files at
 /// every triangle; the surface does not end there. Positions are compared exactly, and −0 equals 0.
+/// Hashes differ from run to run, so that no file is made of positions that share one.
 pub fn weld_by_position(positions: &[Vec3]) -> Vec<u32> {
     in_shares(positions, SHARE)
 }
@@ -26,17 +28,18 @@ fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
     // Adding 0 turns −0 into 0.
     let key = |position: &Vec3| position.to_array().map(|x| (x + 0.0).to_bits());
     if positions.len() <= share {
-        let mut first_at = FxHashMap::with_capacity_and_hasher(positions.len(), FxBuildHasher);
+        let mut first_at = HashMap::with_capacity(positions.len());
         let weld = |(index, position)| *first_at.entry(key(position)).or_insert(index);
         return (0..).zip(positions).map(weld).collect();
     }
+    let hasher = RandomState::default();
     let starts = (0..positions.len()).into_par_iter().step_by(share);
     let shared_out: Vec<Vec<Vec<u32>>> = starts
         .map(|start| {
             let mut lists = vec![Vec::new(); SHARDS];
             let end = positions.len().min(start + share);
             for (index, position) in (start..end).zip(&positions[start..end]) {
-                let hash = FxBuildHasher.hash_one(key(position)).to_le_bytes();
+                let hash = hasher.hash_one(key(position)).to_le_bytes();
                 let index = u32::try_from(index).unwrap_or(u32::MAX);
                 lists[usize::from(hash[4]) % SHARDS].push(index);
             }
@@ -45,7 +48,7 @@ fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
         .collect();
     let welded: Vec<AtomicU32> = positions.par_iter().map(|_| AtomicU32::new(0)).collect();
     (0..SHARDS).into_par_iter().for_each(|shard| {
-        let mut first_at = FxHashMap::default();
+        let mut first_at = HashMap::new();
         // In order, so that the first is the lowest.
         for &index in shared_out.iter().flat_map(|lists| &lists[shard]) {
             let first = *first_at.entry(key(&positions[index as usize])).or_insert(index);
@@ -84,5 +87,15 @@ mod tests {
         for share in [1, 7, 1000, 4999] {
             assert_eq!(in_shares(&positions, share), whole, "{share}");
         }
+    }
+
+    /// These share a hash in rustc-hash 2.1, whose seed is the same in every run: with it, minutes go by.
+    #[test]
+    fn positions_made_to_share_a_hash_are_welded_like_any() {
+        let [x, y] = [0x85a3_08d3, 0x243f_6a88].map(f32::from_bits);
+        let positions: Vec<Vec3> = (0..400_000u32).map(|z| Vec3::new(x, y, z as f32)).collect();
+        let expected: Vec<u32> = (0..400_000).collect();
+        assert_eq!(weld_by_position(&positions), expected);
+        assert_eq!(in_shares(&positions, positions.len()), expected);
     }
 }

@@ -123,4 +123,9 @@ fn a_blank_page_is_told() {
     let output = bench.run("draw corner.obj -o a.svg --eye 9,9,9 --target 20,20,20");
     assert!(output.status.success());
     assert!(String::from_utf8(output.stderr).unwrap().contains("no line of corner.obj"));
+    // There are none to see.
+    let output = bench.run("draw corner.obj -o a.svg --lines boundary,intersection");
+    assert!(output.status.success());
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("corner.obj has no such line from here"), "{told}");
 }

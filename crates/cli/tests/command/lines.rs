@@ -85,6 +85,10 @@ fn a_model_of_one_part_names_nothing() {
         let svg = std::fs::read_to_string(bench.path().join("a.svg")).unwrap();
         assert!(!svg.contains("data-part") && !svg.contains("data-material"));
     }
+    // Of a model that has names a page without lines says so, too.
+    bench.write("two.obj", format!("o a\n{CORNER}o b\n{CORNER}"));
+    let json = bench.json("draw two.obj -o a.svg --json --eye 9,9,9 --target 20,20,20");
+    assert_eq!([&json["parts"], &json["materials"]], [&serde_json::json!({}); 2]);
     bench.write("red.obj", format!("usemtl red\n{CORNER}"));
     let json = bench.json("draw red.obj -o a.svg --json");
     assert_eq!(json["materials"]["red"]["contour"], json["contour"]["visible_length"]);

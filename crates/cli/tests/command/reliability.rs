@@ -108,6 +108,9 @@ fn what_may_not_be_written_is_told_before_the_work() {
             let output = program(&bench, &long).output().unwrap();
             check_failed(&output, &[folder, name, "cannot write"]);
         }
+        let long = "draw shape:bumpy-sphere:9000000 --turntable 60 --frames";
+        let output = program(&bench, &format!("{long} {folder}/turn")).output().unwrap();
+        check_failed(&output, &[folder, "turn", "cannot write"]);
     }
     bench.write("out.svg", "precious");
     let file = bench.path().join("out.svg");
@@ -257,4 +260,16 @@ fn nothing_is_written_over_what_is_read() {
     bench.fail("draw corner.obj -o corner.obj", &["corner.obj"]);
     bench.fail("draw a.patches --model corner.obj -o corner.obj", &["corner.obj"]);
     bench.fail("draw a.patches --model corner.obj -o a.patches", &["a.patches"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_shell_allows_is_all_that_there_is() {
+    let bench = Bench::new();
+    let program = env!("CARGO_BIN_EXE_drypoint");
+    let mut shell = Command::new("sh");
+    let script = "ulimit -v 1500000; exec \"$drypoint\" draw shape:bumpy-sphere:9000000 -o out.svg";
+    shell.args(["-c", script]).env("drypoint", program).current_dir(bench.path());
+    check_failed(&shell.output().unwrap(), &["needs about 2.8 GB of memory, and 1.5 GB are free"]);
+    assert!(bench.files().is_empty());
 }

@@ -19,10 +19,13 @@ use super::text::{self, Lines, Plain, Words};
 
 /// Reads an OBJ file: `v`, `f`, `o`, `g` and `usemtl` statements; all others are ignored.
 pub(super) fn parse(bytes: &[u8], size: usize, options: &ReadOptions) -> Result<Model, ReadError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match in_pieces(bytes, size, options) {
-        Some(content) => content.into_model(),
-        None => in_one(bytes, options)?.into_model(),
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if let Some(content) = in_pieces(text, size, options) {
+        return content.into_model();
+    }
+    match memchr(0, bytes) {
+        Some(byte) => Err(Fault::NotText.at(Place::Byte(byte as u64))),
+        None => in_one(text, options)?.into_model(),
     }
 }
 
@@ -54,9 +57,6 @@ fn in_pieces(bytes: &[u8], size: usize, options: &ReadOptions) -> Option<Content
 
 /// The same, or the first thing that is wrong.
 fn in_one(bytes: &[u8], options: &ReadOptions) -> Result<Content, ReadError> {
-    if let Some(byte) = memchr(0, bytes) {
-        return Err(Fault::NotText.at(Place::Byte(byte as u64)));
-    }
     let start = Reader { before: Some(0), options: *options, ..Reader::default() };
     let mut reader = start.clone();
     reader.read(bytes)?;

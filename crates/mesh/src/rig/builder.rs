@@ -1,7 +1,7 @@
 //! From vertices with their joints to a rig.
 
+use foldhash::HashMap;
 use glam::{DAffine3, Vec3};
-use rustc_hash::FxHashMap;
 
 use super::nodes::parents_first;
 use super::{Animation, Carrier, Channel, Local, Morph, Node, Pose, Property, Rig};
@@ -32,11 +32,11 @@ pub struct Offset {
 #[derive(Debug, Default)]
 pub struct RigBuilder {
     rig: Rig,
-    carriers: FxHashMap<Carrier, u32>,
+    carriers: HashMap<Carrier, u32>,
     /// For each node where it is in the scene at rest, once that was asked for.
     resting: Option<Vec<DAffine3>>,
     /// Vertices by all that decides where they are.
-    vertices: FxHashMap<Box<[u32]>, u32>,
+    vertices: HashMap<Box<[u32]>, u32>,
     key: Vec<u32>,
 }
 

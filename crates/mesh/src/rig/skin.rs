@@ -1,8 +1,8 @@
 //! A rig split into parts that keep their shape: Tsiapkolis and Bénard, Patch Decomposition for
 //! Efficient Mesh Contours Extraction, CGF 43(4), 2024, §4.1.
 
+use foldhash::HashMap;
 use glam::Vec3;
-use rustc_hash::FxHashMap;
 
 use super::Rig;
 use crate::{EdgeClass, EdgeFilter, EdgeId, Mesh, MeshAdjacency, MeshError};
@@ -92,7 +92,7 @@ impl Skin {
             parts: Vec::new(),
             loose: Vec::new(),
         };
-        let mut known = FxHashMap::default();
+        let mut known = HashMap::default();
         for (carrier, faces) in (0..).zip(faces_of_carriers(rig)) {
             if !faces.is_empty() {
                 skin.add_part(rig, carrier, &faces, &mut known);
@@ -111,7 +111,7 @@ impl Skin {
         rig: &Rig,
         carrier: u32,
         faces: &[u32],
-        known: &mut FxHashMap<Content, u32>,
+        known: &mut HashMap<Content, u32>,
     ) {
         let part = length(self.parts.len());
         let mesh = shape_of(rig, faces);
@@ -230,7 +230,7 @@ fn faces_of_carriers(rig: &Rig) -> Vec<Vec<u32>> {
 
 /// The mesh of `faces` in the space of the carrier that moves all of them.
 fn shape_of(rig: &Rig, faces: &[u32]) -> Mesh {
-    let mut vertices = FxHashMap::default();
+    let mut vertices = HashMap::default();
     let mut positions = Vec::new();
     let mut vertex = |vertex: u32| {
         *vertices.entry(vertex).or_insert_with(|| {

@@ -21,7 +21,7 @@ fn bad_files_are_named_by_their_content() {
     let ascii_ply = ply("ascii", "element vertex 0");
     let stl = binary_stl(b"", &[[0.0; 3]; 3]);
     let gltf = r#" {"asset": {"version": "2.0"}}"#;
-    let cases: [(&str, &[u8], &str); 14] = [
+    let cases: [(&str, &[u8], &str); 15] = [
         ("a.obj", b"", "is empty"),
         ("a.PLY", b"", "is empty"),
         ("a.obj", ascii_ply.as_bytes(), "has extension .obj but is a PLY file"),
@@ -38,6 +38,7 @@ fn bad_files_are_named_by_their_content() {
         ),
         ("a", obj.as_bytes(), "has no extension; only .obj, .ply, .stl, .gltf, .glb can be read"),
         ("a.obj", b"\x7fELF\x02\x01\x01\x00", "byte 7: is zero, so this is no text file"),
+        ("a.obj", b"\xef\xbb\xbfv 0 \x00", "byte 7: is zero, so this is no text file"),
         ("a.ply", b"\x89PNG\r\n", "line 1: expected \"ply\", found \"\u{fffd}PNG\""),
         ("a.glb", b"\x89PNG\r\n", "byte 0: is no valid glTF: expected value at line 1 column 1"),
     ];
@@ -126,6 +127,12 @@ fn bad_ply_headers_are_refused() {
     );
     check(&property("element e 2"), "line 4: declares \"e\" a second time");
     check(&property("property int x\nproperty int x"), "line 5: declares \"x\" a second time");
+    // Found among many, without comparing each to each.
+    let many: String = (0..400_000).map(|i| format!("property int x{i}\n")).collect();
+    check(
+        &property(&format!("{many}property int x0")),
+        "line 400004: declares \"x0\" a second time",
+    );
     check(&property("vertex 3"), "line 4: expected a header line, found \"vertex 3\"");
     check(&header("element face 0"), "line 4: has no list vertex_indices of face");
     check(&header(FACES), "line 5: has no element vertex");

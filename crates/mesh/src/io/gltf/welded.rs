@@ -1,7 +1,7 @@
 //! Triangles that are added piece by piece.
 
+use foldhash::HashMap;
 use glam::{DVec3, Vec3};
-use rustc_hash::FxHashMap;
 
 use super::Piece;
 use crate::io::error::{Fault, ReadError};
@@ -13,7 +13,7 @@ use crate::{MAX_TRIANGLES, MeshError};
 pub(super) struct Welded {
     pub(super) positions: Vec<Vec3>,
     /// Vertices by the bits of their coordinates.
-    known: FxHashMap<[u32; 3], u32>,
+    known: HashMap<[u32; 3], u32>,
 }
 
 impl Welded {

@@ -1,5 +1,7 @@
 //! The header: what is in the file, in which order and how.
 
+use std::collections::HashSet;
+
 use crate::io::error::{Fault, ReadError, lossy};
 use crate::io::text::{self, Lines, Words};
 
@@ -117,6 +119,7 @@ fn read(lines: &mut Lines<'_>) -> Result<Header, Fault> {
     }
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let (mut of_file, mut of_element) = (HashSet::new(), HashSet::new());
     loop {
         let line = lines.next_line().ok_or(Fault::Unfinished { missing: "end_header" })?;
         let mut words = Words(line);
@@ -124,16 +127,17 @@ fn read(lines: &mut Lines<'_>) -> Result<Header, Fault> {
             b"format" => encoding = Some(format(words, line)?),
             b"element" => {
                 let element = element(words, line)?;
-                if elements.iter().any(|other| other.name == element.name) {
+                if !of_file.insert(element.name.clone()) {
                     return Err(Fault::Twice { name: element.name });
                 }
                 elements.push(element);
+                of_element.clear();
             }
             b"property" => {
                 let property = property(words, line)?;
                 let element = elements.last_mut();
                 let element = element.ok_or_else(|| unexpected("an element first", line))?;
-                if element.properties.iter().any(|other| other.name == property.name) {
+                if !of_element.insert(property.name.clone()) {
                     return Err(Fault::Twice { name: property.name });
                 }
                 element.properties.push(property);
