@@ -1,6 +1,6 @@
 //! Vertices at equal positions are one vertex.
 
-use std::hash::BuildHasher;
+use std::hash::{BuildHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use foldhash::fast::RandomState;
@@ -15,6 +15,26 @@ const SHARDS: usize = 64;
 /// Vertices that a thread shares out at once. Fewer in all are not worth sharing out.
 const SHARE: usize = 1 << 14;
 
+/// A position as a key: the bits of its coordinates, of which 0 has one set. Hashed as two numbers, which
+/// takes half the time of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place([u32; 3]);
+
+impl Place {
+    pub(crate) fn of(position: Vec3) -> Self {
+        // Adding 0 turns −0 into 0.
+        Self((position + Vec3::ZERO).to_array().map(f32::to_bits))
+    }
+}
+
+impl Hash for Place {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let [x, y, z] = self.0;
+        state.write_u64(u64::from(x) << 32 | u64::from(y));
+        state.write_u32(z);
+    }
+}
+
 /// For each vertex the lowest index of a vertex at the same position. Linear, on all threads.
 ///
 /// OBJ and glTF files split vertices where texture coordinates or normals jump, and STL files at
@@ -25,11 +45,9 @@ pub fn weld_by_position(positions: &[Vec3]) -> Vec<u32> {
 }
 
 fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
-    // Adding 0 turns −0 into 0.
-    let key = |position: &Vec3| position.to_array().map(|x| (x + 0.0).to_bits());
     if positions.len() <= share {
         let mut first_at = HashMap::with_capacity(positions.len());
-        let weld = |(index, position)| *first_at.entry(key(position)).or_insert(index);
+        let weld = |(index, &position)| *first_at.entry(Place::of(position)).or_insert(index);
         return (0..).zip(positions).map(weld).collect();
     }
     let hasher = RandomState::default();
@@ -38,8 +56,8 @@ fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
         .map(|start| {
             let mut lists = vec![Vec::new(); SHARDS];
             let end = positions.len().min(start + share);
-            for (index, position) in (start..end).zip(&positions[start..end]) {
-                let hash = hasher.hash_one(key(position)).to_le_bytes();
+            for (index, &position) in (start..end).zip(&positions[start..end]) {
+                let hash = hasher.hash_one(Place::of(position)).to_le_bytes();
                 let index = u32::try_from(index).unwrap_or(u32::MAX);
                 lists[usize::from(hash[4]) % SHARDS].push(index);
             }
@@ -51,7 +69,8 @@ fn in_shares(positions: &[Vec3], share: usize) -> Vec<u32> {
         let mut first_at = HashMap::new();
         // In order, so that the first is the lowest.
         for &index in shared_out.iter().flat_map(|lists| &lists[shard]) {
-            let first = *first_at.entry(key(&positions[index as usize])).or_insert(index);
+            let place = Place::of(positions[index as usize]);
+            let first = *first_at.entry(place).or_insert(index);
             welded[index as usize].store(first, Ordering::Relaxed);
         }
     });

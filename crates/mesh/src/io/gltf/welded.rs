@@ -6,25 +6,23 @@ use glam::{DVec3, Vec3};
 use super::Piece;
 use crate::io::error::{Fault, ReadError};
 use crate::io::parts::Dropped;
+use crate::weld::Place;
 use crate::{MAX_TRIANGLES, MeshError};
 
 /// Vertices at one position are one. In order of first use.
 #[derive(Default)]
 pub(super) struct Welded {
     pub(super) positions: Vec<Vec3>,
-    /// Vertices by the bits of their coordinates.
-    known: HashMap<[u32; 3], u32>,
+    known: HashMap<Place, u32>,
 }
 
 impl Welded {
     /// The vertex at this position; `None` if that is none.
     pub(super) fn vertex(&mut self, position: Vec3) -> Option<u32> {
-        // Adding 0 turns −0 into 0.
-        let position = position + Vec3::ZERO;
-        let key = position.to_array().map(f32::to_bits);
         position.is_finite().then(|| {
-            *self.known.entry(key).or_insert_with(|| {
-                self.positions.push(position);
+            *self.known.entry(Place::of(position)).or_insert_with(|| {
+                // −0 is stored as 0.
+                self.positions.push(position + Vec3::ZERO);
                 // At most three to a triangle, and those are counted.
                 u32::try_from(self.positions.len() - 1).unwrap_or(u32::MAX)
             })
