@@ -270,6 +270,6 @@ fn what_a_shell_allows_is_all_that_there_is() {
     let mut shell = Command::new("sh");
     let script = "ulimit -v 1500000; exec \"$drypoint\" draw shape:bumpy-sphere:9000000 -o out.svg";
     shell.args(["-c", script]).env("drypoint", program).current_dir(bench.path());
-    check_failed(&shell.output().unwrap(), &["needs about 2.8 GB of memory, and 1.5 GB are free"]);
+    check_failed(&shell.output().unwrap(), &["needs about 3.3 GB of memory, and 1.5 GB are free"]);
     assert!(bench.files().is_empty());
 }
