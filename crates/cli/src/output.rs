@@ -108,10 +108,19 @@ pub(crate) fn tell(message: &str) {
     eprintln!("{}", harmless(&message.replace(['\n', '\r'], " ")));
 }
 
-/// A text with control characters spelled out: a name in a file must not clear a terminal.
+/// A text with control characters spelled out, and those that turn the direction of writing: a name in a
+/// file must not clear a terminal, nor show as another one.
 pub(crate) fn harmless(text: &str) -> String {
-    let spell = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
-    text.chars().map(spell).collect()
+    let turns = |c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let mut spelled = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() || turns(c) {
+            spelled.extend(c.escape_default());
+        } else {
+            spelled.push(c);
+        }
+    }
+    spelled
 }
 
 /// Prints a line of JSON.

@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::output::harmless;
+
 /// How long a stage may take in silence.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -33,7 +35,7 @@ impl Stage {
     }
 
     fn start(bar: ProgressBar, name: &str) -> Self {
-        bar.set_message(name.to_owned());
+        bar.set_message(harmless(name));
         let (done, wait) = mpsc::channel();
         let shown = bar.clone();
         let watch = std::thread::spawn(move || {

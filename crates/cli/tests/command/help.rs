@@ -81,13 +81,16 @@ fn a_name_in_a_file_does_not_reach_the_terminal_as_it_is() {
     let bench = Bench::new();
     bench.write(
         "bell.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\ng \x1b[2J\x07\u{9b}é\nusemtl \x1bc\nf 1 2 3\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\ng \x1b[2J\x07\u{9b}é\u{202e}\nusemtl \x1bc\nf 1 2 3\n",
     );
     let text = bench.succeed("info bell.obj");
-    assert!(text.contains(r"\u{1b}[2J\u{7}\u{9b}é (1 faces)"), "{text}");
+    assert!(text.contains(r"\u{1b}[2J\u{7}\u{9b}é\u{202e} (1 faces)"), "{text}");
     assert!(text.contains(r"\u{1b}c (1 faces)"), "{text}");
     // What a program reads is what the file says.
-    assert_eq!(bench.json("info bell.obj --json")["parts"][0]["name"], "\x1b[2J\x07\u{9b}é");
+    assert_eq!(
+        bench.json("info bell.obj --json")["parts"][0]["name"],
+        "\x1b[2J\x07\u{9b}é\u{202e}"
+    );
     let output = bench.run("extract \x1b[2J.obj --eye 1,2,3");
     assert!(String::from_utf8(output.stderr).unwrap().contains(r"\u{1b}[2J.obj: "));
 }
