@@ -16,6 +16,7 @@ use crate::args::{DrawArgs, Show};
 use crate::frames;
 use crate::gpu::{self, Api};
 use crate::lines::{self, Drawn, Hidden, Lengths, LineArgs, Lines};
+use crate::memory;
 use crate::output::{Output, print_json, tell};
 use crate::patches;
 use crate::progress::Stage;
@@ -76,6 +77,9 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     }
     // A place that cannot be written is told before the work, not after.
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
+    if format == Format::Png {
+        memory::check_picture(args.view.size)?;
+    }
     let (source, loaded) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
@@ -129,6 +133,7 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
         return Err(format!("{}: --method {api} draws .png alone", path.display()));
     }
     let output = Output::open(&path)?;
+    memory::check_picture(args.view.size)?;
     let (source, patches) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
@@ -292,7 +297,7 @@ pub(crate) fn style(args: &LineArgs) -> Result<Style, String> {
 
 fn color(option: &str, text: &str) -> Result<Color, String> {
     let [red, green, blue, alpha] = csscolorparser::parse(text)
-        .map_err(|_| format!("{option}: '{text}' is no CSS colour, as black, #1a2b3c"))?
+        .map_err(|_| format!("{option}: '{text}' is no CSS color, as black, #1a2b3c"))?
         .to_rgba8();
     Ok(Color { red, green, blue, alpha })
 }

@@ -19,6 +19,7 @@ use crate::args::{DrawArgs, number};
 use crate::draw::{self, Format, Scene, Surface};
 use crate::folder::{Folder, Manifest};
 use crate::gpu;
+use crate::memory;
 use crate::output::{print_json, tell};
 use crate::progress::Stage;
 use crate::show::Shown;
@@ -108,6 +109,9 @@ struct Plan {
 pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
     let look = Look::new(args)?;
     let mut folder = Folder::check(folder)?;
+    if look.format == Format::Png {
+        memory::check_picture(args.view.size)?;
+    }
     let (source, loaded) =
         Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if loaded.is_some() {
@@ -345,7 +349,8 @@ impl Film<'_> {
             return print_json(&Report { frames, drawn, kept, blank });
         }
         let there = if kept > 0 { format!(", {kept} were there") } else { String::new() };
-        tell(&format!("drypoint: drew {drawn} frames in {folder}{there}"));
+        let frames = if drawn == 1 { "frame" } else { "frames" };
+        tell(&format!("drypoint: drew {drawn} {frames} in {folder}{there}"));
         Ok(())
     }
 

@@ -160,7 +160,8 @@ fn describe(name: &str, report: &Report) -> String {
     }
     for (label, all) in [("part", &report.parts), ("material", &report.materials)] {
         for Part { name, faces } in all {
-            text += &format!("  {label:<20}{} ({faces} faces)\n", harmless(name));
+            let name = if name.is_empty() { "(no name)".to_owned() } else { harmless(name) };
+            text += &format!("  {label:<20}{name} ({faces} faces)\n");
         }
     }
     for (index, [x, y, z]) in report.positions.iter().flatten().enumerate() {

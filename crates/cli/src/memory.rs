@@ -5,8 +5,15 @@ use std::path::Path;
 use drypoint_mesh::io::{self, Estimate};
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// Bytes below which nobody asks.
+/// Bytes below which nobody asks the system.
 const PLENTY: u64 = 1 << 28;
+
+/// Bytes below which nobody asks at all.
+const LITTLE: u64 = 1 << 24;
+
+/// Bytes of a picture for each pixel: as it is drawn, and once more as it is written. One of 8192 × 8192
+/// took 8.
+const PIXEL: u64 = 8;
 
 /// What is done with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,10 +57,16 @@ pub(crate) fn check(model: &Path, triangles: Option<u64>, work: Work) -> Result<
         None => io::estimate(model).ok().flatten(),
     };
     let needed = estimate.map_or(0, |estimate| needed(&estimate, work));
-    if needed < PLENTY {
-        return Ok(());
-    }
-    verdict(&model.display().to_string(), needed, available())
+    verdict(&model.display().to_string(), needed, available(needed))
+}
+
+/// Refuses a picture of so many pixels for which there is not enough memory.
+///
+/// # Errors
+/// The line that says so.
+pub(crate) fn check_picture([width, height]: [u32; 2]) -> Result<(), String> {
+    let needed = PIXEL * u64::from(width) * u64::from(height);
+    verdict(&format!("--size {width}x{height}"), needed, available(needed))
 }
 
 /// Bytes at the time when most are held.
@@ -82,23 +95,36 @@ fn gigabytes(bytes: u64) -> String {
     if gigabytes < 9.95 { format!("{gigabytes:.1}") } else { format!("{gigabytes:.0}") }
 }
 
-/// Bytes that the system could give now, or a container that we run in, but no more than the process may
-/// have at all; `None` where it does not say.
-fn available() -> Option<u64> {
+/// Bytes that the process may still have, as far as it matters to one that needs so many; `None` where
+/// nobody says.
+fn available(needed: u64) -> Option<u64> {
+    let of_process = (needed >= LITTLE).then(address_space).flatten();
+    let of_system = (needed >= PLENTY).then(free).flatten();
+    of_process.into_iter().chain(of_system).min()
+}
+
+/// Bytes that the system could give now, or a container that we run in; `None` where it does not say.
+fn free() -> Option<u64> {
     let wanted = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(wanted);
     let free = system.available_memory();
     // What the group has of the system's cache it can give back, so that only the rest counts.
     let of_group = |limits: sysinfo::CGroupLimits| limits.total_memory.saturating_sub(limits.rss);
     let free = system.cgroup_limits().map_or(free, |limits| free.min(of_group(limits)));
-    let free = (free > 0).then_some(free);
-    free.into_iter().chain(address_space()).min()
+    (free > 0).then_some(free)
 }
 
-/// Bytes that `ulimit -v` leaves the process, if it does.
+/// Bytes that `ulimit -v` leaves to the process, if it sets a limit: beside what is taken, and what each
+/// thread reserves for a heap and a stack of its own. Two more than work, for progress and for Ctrl-C.
 #[cfg(target_os = "linux")]
 fn address_space() -> Option<u64> {
-    rustix::process::getrlimit(rustix::process::Resource::As).current
+    const THREAD: u64 = (64 + 8) << 20;
+    let threads = rayon::current_num_threads() as u64 + 2;
+    let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages: u64 = pages.split(' ').next()?.parse().ok()?;
+    let taken = pages * rustix::param::page_size() as u64;
+    Some(limit.saturating_sub(taken + THREAD * threads))
 }
 
 /// Elsewhere a limit is set by other means, or binds nobody.
@@ -143,6 +169,7 @@ mod tests {
 
     #[test]
     fn the_system_says_what_is_free() {
-        assert!(available().is_none_or(|free| free > 1 << 20));
+        assert!(free().is_none_or(|free| free > 1 << 20));
+        assert_eq!(available(LITTLE - 1), None);
     }
 }

@@ -17,11 +17,11 @@
 //!   to either side, and is free if one side is: an outline seen in exact alignment with another,
 //!   as in the front view of a box, is drawn.
 
-use std::collections::HashSet;
 use std::ops::Range;
 use std::time::Duration;
 
 use drypoint_mesh::{Mesh, MeshAdjacency, Viewpoint};
+use foldhash::{HashSet, HashSetExt};
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -333,20 +333,20 @@ fn box_around(mesh: &Mesh, triangle: u32, scale: f64) -> Aabb {
     uneven_box(mesh.corners(triangle).map(|p| (p.as_dvec3() * scale).as_vec3()), triangle)
 }
 
-/// The size of the largest coordinate in a hierarchy: of boxes the largest has an area that f32 holds, times the
-/// number of all, and so have those that are 2^112 times as small.
+/// The size of the largest coordinate in a hierarchy: of boxes the largest has an area that f32 holds, times
+/// ten million, and so have those that are 2^112 times as small.
 pub(crate) const LARGEST: f64 = (1u64 << 50) as f64;
 
-/// The box around three points, wider by up to 7 steps of f32, so that equal triangles in a row have unequal
-/// boxes. Where all neighbours are as good as each other, the hierarchy joins one pair in each of as many passes
+/// The box around three points, wider by up to 7 parts in 2^23 of their largest coordinates, so that equal
+/// triangles in a row have unequal boxes. Where all neighbours are as good as each other, the hierarchy joins one pair in each of as many passes
 /// as there are triangles.
 pub(crate) fn uneven_box(corners: [Vec3; 3], triangle: u32) -> Aabb {
     let [a, b, c] = corners.map(Vec3A::from);
-    let max = a.max(b).max(c);
+    let largest = a.abs().max(b.abs()).max(c.abs());
     // Fibonacci hashing: Knuth, The Art of Computer Programming 3, §6.4.
     #[expect(clippy::cast_precision_loss, reason = "three bits")]
     let steps = (triangle.wrapping_mul(0x9e37_79b9) >> 29) as f32;
-    Aabb::new(a.min(b).min(c), max + steps * f32::EPSILON * max.abs())
+    Aabb::new(a.min(b).min(c), a.max(b).max(c) + steps * f32::EPSILON * largest)
 }
 
 impl Occluders<'_> {
@@ -411,8 +411,35 @@ mod tests {
     }
 
     #[test]
+    fn a_box_holds_its_triangle() {
+        let sizes = [0.0, f32::from_bits(1), 1.0 + f32::EPSILON, 3e-38, 7.0, 2f32.powi(50)];
+        let all: Vec<f32> = sizes.into_iter().flat_map(|size| [size, -size]).collect();
+        for (i, &x) in all.iter().enumerate() {
+            for triangle in 0..32 {
+                let y = all[(i + triangle as usize) % all.len()];
+                let corners = [Vec3::new(x, y, -x), Vec3::new(y, x, x), Vec3::new(x, x, y)];
+                let Aabb { min, max } = uneven_box(corners, triangle);
+                for corner in corners.map(Vec3A::from) {
+                    assert!(min.cmple(corner).all() && max.cmpge(corner).all(), "{corners:?}");
+                }
+                assert!(max.is_finite(), "{corners:?}");
+            }
+        }
+    }
+
+    #[test]
     fn pairs_are_found_everywhere_in_a_row_of_equal_triangles() {
-        let mut boxes = leaves(&fence(1 << 14, 1.0, &[]));
+        // Wherever it lies: also where it ends at 0.
+        for turn in [Vec3::ONE, Vec3::NEG_ONE] {
+            check_pairs(turn);
+        }
+    }
+
+    #[track_caller]
+    fn check_pairs(turn: Vec3) {
+        let row = fence(1 << 14, 1.0, &[]);
+        let positions = row.positions().iter().map(|&p| p * turn).collect();
+        let mut boxes = leaves(&Mesh::new(positions, row.triangles().to_vec()).unwrap());
         boxes.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         assert_eq!(boxes.len(), 1 << 14);
         let costs: Vec<f32> =

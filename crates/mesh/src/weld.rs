@@ -39,7 +39,7 @@ impl Hash for Place {
 ///
 /// OBJ and glTF files split vertices where texture coordinates or normals jump, and STL files at
 /// every triangle; the surface does not end there. Positions are compared exactly, and −0 equals 0.
-/// Hashes differ from run to run, so that no file is made of positions that share one.
+/// Hashes differ from run to run, so that whoever makes a file cannot know which positions share one.
 pub fn weld_by_position(positions: &[Vec3]) -> Vec<u32> {
     in_shares(positions, SHARE)
 }

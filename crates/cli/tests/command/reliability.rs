@@ -262,14 +262,38 @@ fn nothing_is_written_over_what_is_read() {
     bench.fail("draw a.patches --model corner.obj -o a.patches", &["a.patches"]);
 }
 
+/// Runs the program in a shell in which it may have so many kilobytes.
+#[cfg(target_os = "linux")]
+fn with_little_memory(bench: &Bench, kilobytes: u32, args: &str) -> Output {
+    let mut shell = Command::new("sh");
+    let script = format!("ulimit -v {kilobytes}; exec \"$drypoint\" {args}");
+    shell.args(["-c", &script]).env("drypoint", env!("CARGO_BIN_EXE_drypoint"));
+    // Without memory, a backtrace would wait for itself.
+    shell.current_dir(bench.path()).env("RUST_BACKTRACE", "0").env("RAYON_NUM_THREADS", "2");
+    shell.output().unwrap()
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn what_a_shell_allows_is_all_that_there_is() {
     let bench = Bench::new();
-    let program = env!("CARGO_BIN_EXE_drypoint");
-    let mut shell = Command::new("sh");
-    let script = "ulimit -v 1500000; exec \"$drypoint\" draw shape:bumpy-sphere:9000000 -o out.svg";
-    shell.args(["-c", script]).env("drypoint", program).current_dir(bench.path());
-    check_failed(&shell.output().unwrap(), &["needs about 3.3 GB of memory, and 1.5 GB are free"]);
-    assert!(bench.files().is_empty());
+    for (args, name, needed) in [
+        ("draw shape:bumpy-sphere:9000000 -o out.svg", "bumpy-sphere", "3.3 GB"),
+        ("draw shape:bumpy-sphere:1000000 -o out.svg", "bumpy-sphere", "0.4 GB"),
+        ("draw shape:cube --size 16384x16384 -o out.png", "--size", "2.1 GB"),
+        (
+            "draw shape:cube --turntable 4 --format png --size 9000x9000 --frames turn",
+            "--size",
+            "0.6 GB",
+        ),
+    ] {
+        let output = with_little_memory(&bench, 500_000, args);
+        check_failed(&output, &[name, &format!("needs about {needed} of memory, and 0.")]);
+        assert!(bench.files().is_empty(), "{args}");
+    }
+    // What fits is done.
+    for args in ["draw shape:bumpy-sphere:200000 -o out.svg", "draw shape:cube -o out.png"] {
+        let output = with_little_memory(&bench, 500_000, args);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
 }
