@@ -55,6 +55,14 @@ impl Format {
             Self::Png => "png",
         }
     }
+
+    /// Refuses a picture of so many pixels that does not fit in memory.
+    pub(crate) fn check_room(self, size: [u32; 2]) -> Result<(), String> {
+        match self {
+            Self::Svg => Ok(()),
+            Self::Png => memory::check_picture(size),
+        }
+    }
 }
 
 pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
@@ -77,9 +85,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
     }
     // A place that cannot be written is told before the work, not after.
     let (format, output) = (format_of(&path)?, Output::open(&path)?);
-    if format == Format::Png {
-        memory::check_picture(args.view.size)?;
-    }
+    format.check_room(args.view.size)?;
     let (source, loaded) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
@@ -97,11 +103,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<(), String> {
         let _stage = Stage::new("finding what is visible");
         scene.draw(&surface, (patches.as_ref(), shown), &args.lines)
     };
-    if drawing.layers.iter().all(|layer| layer.segments == 0) && drawing.areas.is_empty() {
-        tell(&format!("drypoint: {} has no such line from here", source.name));
-    } else if is_blank(&drawing) {
-        tell(&format!("drypoint: no line of {} is visible on the page", source.name));
-    }
+    tell_if_blank(&drawing, &source.name);
     let picture = {
         let _stage = Stage::new("inking");
         ink(&drawing, (&style, format), &source::stem(&args.model))?
@@ -133,7 +135,7 @@ fn run_on_gpu(api: Api, args: &DrawArgs, style: &Style) -> Result<(), String> {
         return Err(format!("{}: --method {api} draws .png alone", path.display()));
     }
     let output = Output::open(&path)?;
-    memory::check_picture(args.view.size)?;
+    Format::Png.check_room(args.view.size)?;
     let (source, patches) = load(args)?;
     let camera = view::camera(&args.view, source.mesh())?;
     let adjacency = visible_adjacency(&source)?;
@@ -306,6 +308,16 @@ fn color(option: &str, text: &str) -> Result<Color, String> {
 pub(crate) fn is_blank(drawing: &Drawing) -> bool {
     let is_blank = |layer: &Layer| layer.visible_length() == 0.0;
     drawing.layers.iter().all(is_blank) && drawing.areas.is_empty()
+}
+
+/// Says that there are no lines, or that none can be seen.
+fn tell_if_blank(drawing: &Drawing, name: &str) {
+    let has_none = drawing.layers.iter().all(|layer| layer.segments == 0);
+    if has_none && drawing.areas.is_empty() {
+        tell(&format!("drypoint: {name} has no such line from here"));
+    } else if is_blank(drawing) {
+        tell(&format!("drypoint: no line of {name} is visible on the page"));
+    }
 }
 
 /// The picture as a file.

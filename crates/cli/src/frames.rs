@@ -19,7 +19,6 @@ use crate::args::{DrawArgs, number};
 use crate::draw::{self, Format, Scene, Surface};
 use crate::folder::{Folder, Manifest};
 use crate::gpu;
-use crate::memory;
 use crate::output::{print_json, tell};
 use crate::progress::Stage;
 use crate::show::Shown;
@@ -109,9 +108,7 @@ struct Plan {
 pub(crate) fn run(args: &DrawArgs, folder: &Path) -> Result<(), String> {
     let look = Look::new(args)?;
     let mut folder = Folder::check(folder)?;
-    if look.format == Format::Png {
-        memory::check_picture(args.view.size)?;
-    }
+    look.format.check_room(args.view.size)?;
     let (source, loaded) =
         Source::load_with_patches(&args.model, args.mesh.as_deref(), args.read, args.work())?;
     if loaded.is_some() {
