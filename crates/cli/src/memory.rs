@@ -29,14 +29,14 @@ pub(crate) enum Work {
 /// Bytes that the program holds at most for each triangle, and for each vertex beside.
 ///
 /// Measured as the largest resident size on a bumpy sphere of 1,003,520 triangles, as PLY with 501,762
-/// vertices: `info` took 138 MB, `draw` 352 MB and 372 MB with `--lines all`; as STL, with three vertices
+/// vertices: `info` took 138 MB, `draw` 239 MB and 256 MB with `--lines all`; as STL, with three vertices
 /// to a triangle, 40 MB more. `patches` took 310 MB with `--preset fast`, 372 MB with the default and
-/// 566 MB with `--edges all`; `draw --show patches` 544 MB. With 10 million triangles `info` and `draw`
-/// took 1.29 and 3.39 GB.
+/// 566 MB with `--edges all`; `draw --show patches` 541 MB. With 10 million triangles `info` and `draw`
+/// took 1.29 and 2.27 GB.
 fn bytes_of(work: Work) -> [u64; 2] {
     match work {
         Work::Edges => [125, 20],
-        Work::Lines => [360, 20],
+        Work::Lines => [245, 20],
         Work::Patches => [560, 20],
     }
 }
@@ -157,7 +157,7 @@ mod tests {
         let of = |bytes, vertices, triangles, work| {
             needed(&Estimate { bytes, vertices, triangles }, work)
         };
-        let measured = [(Work::Edges, 138), (Work::Lines, 372), (Work::Patches, 566)];
+        let measured = [(Work::Edges, 138), (Work::Lines, 256), (Work::Patches, 566)];
         for (work, megabytes) in measured {
             let found = of(19_067_084, 501_762, 1_003_520, work) / 1_000_000;
             assert!((megabytes - 10..=megabytes + 10).contains(&found), "{work:?}: {found}");

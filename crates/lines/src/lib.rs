@@ -63,7 +63,7 @@
 //! All are on by default. Without `visibility` there is [`Drawing::through_glass`].
 //!
 //! - `visibility`: [`Occluders`], [`Drawing::new`], [`Intersections::new`], [`tinted_areas`] (crates
-//!   `obvhs`, `rayon` and `robust`).
+//!   `foldhash`, `obvhs`, `rayon` and `robust`).
 //! - `svg`: [`to_svg`] (crate `svg`).
 //! - `png`: [`to_png`] (crate `tiny-skia`).
 //!
@@ -82,6 +82,8 @@ mod drawing;
 mod face_names;
 mod filter;
 mod fit;
+#[cfg(feature = "visibility")]
+mod hierarchy;
 mod intersections;
 mod labels;
 #[cfg(feature = "visibility")]

@@ -278,8 +278,8 @@ fn with_little_memory(bench: &Bench, kilobytes: u32, args: &str) -> Output {
 fn what_a_shell_allows_is_all_that_there_is() {
     let bench = Bench::new();
     for (args, name, needed) in [
-        ("draw shape:bumpy-sphere:9000000 -o out.svg", "bumpy-sphere", "3.3 GB"),
-        ("draw shape:bumpy-sphere:1000000 -o out.svg", "bumpy-sphere", "0.4 GB"),
+        ("draw shape:bumpy-sphere:9000000 -o out.svg", "bumpy-sphere", "2.3 GB"),
+        ("draw shape:bumpy-sphere:1000000 -o out.svg", "bumpy-sphere", "0.3 GB"),
         ("draw shape:cube --size 16384x16384 -o out.png", "--size", "2.1 GB"),
         (
             "draw shape:cube --turntable 4 --format png --size 9000x9000 --frames turn",

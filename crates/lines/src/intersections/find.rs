@@ -1,21 +1,19 @@
 //! Which faces cross, and the lines in which they do.
 
 use std::collections::HashMap;
-use std::time::Duration;
 
 use drypoint_mesh::{Mesh, MeshAdjacency, weld_by_position};
 use glam::DVec3;
-use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
 use rayon::prelude::*;
 
 use super::meeting::{Face, Meeting, Spot, meet};
 use super::passing::Apexes;
 use super::{End, Intersections, Piece};
 use crate::disjoint::DisjointSets;
-use crate::occluders::{LARGEST, uneven_box};
+use crate::hierarchy::{LARGEST, hierarchy};
+use crate::occluders::box_around;
 
 impl Intersections {
     /// Finds where faces cross, on all threads, through a hierarchy of boxes, by exact predicates. The
@@ -82,9 +80,9 @@ impl Faces<'_> {
         distinct
     }
 
-    /// The box of a face, in units of `scale`. Rounding keeps order, so boxes that touch still do.
+    /// The box of a face, in units of `scale`. Boxes that touch still do.
     fn bounds(&self, id: u32, scale: f64) -> Aabb {
-        uneven_box(self.face(id).points.map(|p| (p * scale).as_vec3()), id)
+        box_around(self.face(id).points, scale)
     }
 }
 
@@ -94,8 +92,7 @@ fn meetings(faces: Faces<'_>, adjacency: &MeshAdjacency) -> Vec<Meeting> {
     let largest = faces.mesh.bounds().map_or(1.0, |b| b.min.abs().max(b.max.abs()).max_element());
     let scale = LARGEST / f64::from(largest).max(f64::MIN_POSITIVE);
     let boxes: Vec<Aabb> = distinct.par_iter().map(|&id| faces.bounds(id, scale)).collect();
-    let mut unread = Duration::ZERO;
-    let bvh = build_bvh2(&boxes, BvhBuildParams::fastest_build(), &mut unread);
+    let bvh = hierarchy(&boxes);
     let meetings_of = |index: usize| {
         let face = faces.face(distinct[index]);
         let mut found = Vec::new();
