@@ -1,12 +1,8 @@
 // Tests every edge of one part: a workgroup takes some thousand edges of one instance.
 
 @compute @workgroup_size(WIDTH)
-fn brute_force(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) {
-    let number = workgroup_number(workgroup, workgroups);
+fn brute_force(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
+    let number = workgroup_number(workgroup);
     let blocks = blocks_per_instance();
     if number >= blocks * work.instance_count {
         return;

@@ -3,12 +3,8 @@
 // second dispatch; here survivors stay in the workgroup.
 
 @compute @workgroup_size(WIDTH)
-fn patches_and_edges(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) {
-    let number = workgroup_number(workgroup, workgroups);
+fn patches_and_edges(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
+    let number = workgroup_number(workgroup);
     let blocks = blocks_per_instance();
     if number >= blocks * work.instance_count {
         return;
@@ -19,11 +15,10 @@ fn patches_and_edges(
     let end = min(first + work.items_per_workgroup, work.item_count);
     // Once, but where the work was cut for wider workgroups.
     for (var i = first; i < end; i += WIDTH) {
-        var survivor = Survivor(0u, 0u, 0u);
         if i + lane.index < end {
-            survivor = test_patch(work.first_item + i + lane.index, instance);
+            test_patch(work.first_item + i + lane.index, instance);
         }
-        test_edges(survivor, lane);
+        test_edges(lane);
     }
     end_patches(lane);
 }

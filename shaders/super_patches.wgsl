@@ -2,25 +2,23 @@
 
 @group(0) @binding(3) var<storage, read> super_patches: array<Group>;
 
-// As edge_ends and edge_offsets, of patches.
+// As edge_ends, edge_offsets and taken, of patches: no more of these than two lanes to the power of 16 hold.
 var<workgroup> patch_ends: array<u32, WIDTH>;
 var<workgroup> patch_offsets: array<u32, WIDTH>;
-var<workgroup> patch_total: u32;
+var<workgroup> groups_taken: atomic<u32>;
+var<workgroup> all_groups: u32;
 var<workgroup> super_patches_tested: atomic<u32>;
 var<workgroup> super_patches_accepted: atomic<u32>;
 
 @compute @workgroup_size(WIDTH)
-fn super_patches_to_edges(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) {
-    let number = workgroup_number(workgroup, workgroups);
+fn super_patches_to_edges(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
+    let number = workgroup_number(workgroup);
     let blocks = blocks_per_instance();
     if number >= blocks * work.instance_count {
         return;
     }
     if lane.index == 0u {
+        atomicStore(&groups_taken, 0u);
         atomicStore(&super_patches_tested, 0u);
         atomicStore(&super_patches_accepted, 0u);
     }
@@ -30,15 +28,21 @@ fn super_patches_to_edges(
     let end = min(first + work.items_per_workgroup, work.item_count);
     // Once, but where the work was cut for wider workgroups.
     for (var i = first; i < end; i += WIDTH) {
-        find_patches(i + lane.index, end, instance, lane);
-        let total = workgroupUniformLoad(&patch_total);
-        for (var first_place = 0u; first_place < total; first_place += WIDTH) {
+        if i + lane.index < end {
+            test_super_patch(work.first_item + i + lane.index, instance);
+        }
+        workgroupBarrier();
+        if lane.index == 0u {
+            all_groups = atomicLoad(&groups_taken);
+            atomicStore(&groups_taken, 0u);
+        }
+        let all = workgroupUniformLoad(&all_groups);
+        for (var first_place = 0u; first_place < all / 512u; first_place += WIDTH) {
             let place = first_place + lane.index;
-            var survivor = Survivor(0u, 0u, 0u);
-            if place < total {
-                survivor = test_patch(patch_offsets[super_patch_of(place)] + place, instance);
+            if place < all / 512u {
+                test_patch(patch_offsets[super_patch_of(place, all % 512u)] + place, instance);
             }
-            test_edges(survivor, lane);
+            test_edges(lane);
         }
     }
     end_patches(lane);
@@ -48,43 +52,28 @@ fn super_patches_to_edges(
     }
 }
 
-// Lists the patches of the super-patches that survive, of one for each lane.
-fn find_patches(place: u32, end: u32, instance: u32, lane: Lane) {
-    var first_patch = 0u;
-    var count = 0u;
-    if place < end {
-        let group = super_patches[work.first_item + place];
-        atomicAdd(&super_patches_tested, group.weight);
-        if may_hold_contour(group.bound, viewpoints[placement_of(instance, group.part)]) {
-            first_patch = group.first;
-            count = group.count;
-            atomicAdd(&super_patches_accepted, group.weight);
-        }
-    }
-    patch_ends[lane.index] = count;
-    for (var step = 1u; step < WIDTH; step *= 2u) {
-        workgroupBarrier();
-        var before = 0u;
-        if lane.index >= step {
-            before = patch_ends[lane.index - step];
-        }
-        workgroupBarrier();
-        patch_ends[lane.index] += before;
-    }
-    let patch_end = patch_ends[lane.index];
-    patch_offsets[lane.index] = first_patch - (patch_end - count);
-    if lane.index == WIDTH - 1u {
-        patch_total = patch_end;
+fn test_super_patch(index: u32, instance: u32) {
+    let group = super_patches[index];
+    atomicAdd(&super_patches_tested, group.weight);
+    if may_hold_contour(group.bound, viewpoints[placement_of(instance, group.part)]) {
+        atomicAdd(&super_patches_accepted, group.weight);
+        let before = atomicAdd(&groups_taken, 512u * group.count + 1u);
+        patch_ends[before % 512u] = before / 512u + group.count;
+        patch_offsets[before % 512u] = group.first - before / 512u;
     }
 }
 
-// The first lane whose patches end after `place`.
-fn super_patch_of(place: u32) -> u32 {
-    var owner = 0u;
-    for (var step = WIDTH / 2u; step > 0u; step /= 2u) {
-        if patch_ends[owner + step - 1u] <= place {
-            owner += step;
+// The first of `count` super-patches whose patches end after `place`.
+fn super_patch_of(place: u32, count: u32) -> u32 {
+    var low = 0u;
+    var high = count - 1u;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if patch_ends[middle] <= place {
+            low = middle + 1u;
+        } else {
+            high = middle;
         }
     }
-    return owner;
+    return low;
 }

@@ -1,12 +1,8 @@
 // Brute force, without a task shader: edges of all instances are numbered through, an edge a lane in each round.
 
 @mesh(output) @workgroup_size(MESH_WIDTH)
-fn all_edges(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) {
-    let number = workgroup_number(workgroup, workgroups);
+fn all_edges(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
+    let number = workgroup_number(workgroup);
     begin_emitting(lane);
     for (var first = 0u; first < EDGES_PER_WORKGROUP; first += MESH_WIDTH) {
         let item = number * EDGES_PER_WORKGROUP + first + lane.index;

@@ -16,12 +16,8 @@ var<workgroup> super_patches_tested: atomic<u32>;
 var<workgroup> super_patches_accepted: atomic<u32>;
 
 @task @payload(payload) @workgroup_size(TASK_WIDTH)
-fn cull_super_patches(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) -> @builtin(mesh_task_size) vec3u {
-    let number = workgroup_number(workgroup, workgroups);
+fn cull_super_patches(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) -> @builtin(mesh_task_size) vec3u {
+    let number = workgroup_number(workgroup);
     let instance = work.first_instance + number / work.item_count;
     let is_work = number < work.item_count * work.instance_count;
     if lane.index == 0u {

@@ -40,12 +40,8 @@ fn is_loose_contour(edge: LooseEdge, left: u32, right: u32) -> bool {
 }
 
 @compute @workgroup_size(WIDTH)
-fn test_loose_edges(
-    lane: Lane,
-    @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-) {
-    let number = workgroup_number(workgroup, workgroups);
+fn test_loose_edges(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
+    let number = workgroup_number(workgroup);
     let blocks = blocks_per_instance();
     if number >= blocks * work.instance_count {
         return;

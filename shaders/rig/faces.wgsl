@@ -33,9 +33,8 @@ struct PartFace {
 fn find_sides(
     @builtin(local_invocation_index) lane: u32,
     @builtin(workgroup_id) workgroup: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
 ) {
-    let number = workgroup_number(workgroup, workgroups);
+    let number = workgroup_number(workgroup);
     let blocks = blocks_per_instance();
     let first = (number % blocks) * work.items_per_workgroup;
     let end = min(first + work.items_per_workgroup, work.item_count);

@@ -15,15 +15,6 @@ struct EdgeEnds {
 @group(1) @binding(2) var<storage, read> viewpoints: array<vec4f>;
 @group(1) @binding(3) var<storage, read_write> segments: array<Segment>;
 
-// Workgroups are numbered through, row by row: there may be more than one dimension holds.
-fn workgroup_number(workgroup: vec3u, workgroups: vec3u) -> u32 {
-    return workgroup.x + workgroup.y * workgroups.x;
-}
-
-fn blocks_per_instance() -> u32 {
-    return (work.item_count + work.items_per_workgroup - 1u) / work.items_per_workgroup;
-}
-
 fn write_segment(index: u32, edge: u32, placement: u32) {
     if index < work.segment_capacity {
         let found = ends[edge];

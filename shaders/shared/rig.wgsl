@@ -24,12 +24,3 @@ struct CarrierTransform {
 }
 
 @group(0) @binding(0) var<uniform> rig: RigCounts;
-
-// Workgroups are numbered through, row by row: there may be more than one dimension holds.
-fn workgroup_number(workgroup: vec3u, workgroups: vec3u) -> u32 {
-    return workgroup.x + workgroup.y * workgroups.x;
-}
-
-fn blocks_per_instance() -> u32 {
-    return (work.item_count + work.items_per_workgroup - 1u) / work.items_per_workgroup;
-}

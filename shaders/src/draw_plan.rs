@@ -121,6 +121,7 @@ impl DrawPlan<'_> {
                     segment_capacity: self.segment_capacity,
                     first_placement: 0,
                     most_instances: self.instances,
+                    row: grid[0],
                 };
                 visit(Draw { culling, chunk, work, grid });
             }

@@ -51,6 +51,8 @@ pub struct Work {
     pub first_placement: u32,
     /// Instances that a frame has room for.
     pub most_instances: u32,
+    /// Workgroups along x.
+    pub row: u32,
 }
 
 /// What is counted during one dispatch.

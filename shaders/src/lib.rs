@@ -5,8 +5,6 @@
 //! valid under the limits of plain WebGPU, and made by concatenating files of this crate, of which
 //! `shared/contour.wgsl` holds the tests of patches and edges as pure functions without bindings.
 //!
-//! - Variants with subgroup operations are for wgpu and naga as they are; a browser wants the line
-//!   `enable subgroups;` before them, which naga does not know yet.
 //! - Every struct that a shader reads is here, with the same layout; tests compare both through naga.
 //! - Arithmetic is f32, in a [`Frame`] of the mesh's own: whatever its size and wherever it lies. What
 //!   that costs in accuracy is a stated margin ([`EdgePlanes::doubt`]).
@@ -60,7 +58,7 @@ pub use rig::{
 };
 pub use sources::{
     BRUTE_FORCE, CONTOUR, DEPTH, INK, LINES, PATCHES, POSITIONS, RIG_EDGES, RIG_FACES,
-    RIG_VERTICES, SUPER_PATCHES, Subgroups, TALLY, THIN_LINES, WIDTHS, prelude,
+    RIG_VERTICES, SUPER_PATCHES, TALLY, THIN_LINES, USUAL_WIDTH, WIDTHS, prelude,
 };
 pub use statistics::Statistics;
 pub use style::{DepthOrder, LineStyle, View, divide_by_alpha};

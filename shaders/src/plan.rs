@@ -173,6 +173,7 @@ impl Tiles {
                 let workgroups = blocks * instance_count;
                 // No more rows than needed, and as even as can be.
                 let rows = workgroups.div_ceil(limits.row);
+                let row = workgroups.div_ceil(rows);
                 let work = Work {
                     first_item,
                     item_count,
@@ -180,9 +181,10 @@ impl Tiles {
                     first_instance,
                     instance_count,
                     most_instances: instances,
+                    row,
                     ..Work::default()
                 };
-                visit(work, [workgroups.div_ceil(rows), rows]);
+                visit(work, [row, rows]);
             }
         }
     }

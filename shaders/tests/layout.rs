@@ -28,11 +28,11 @@ fn validate(source: &str, capabilities: Capabilities) -> naga::Module {
     module
 }
 
-/// Entry points, without what subgroup operations need.
+/// Entry points of what runs anywhere.
 fn plain() -> Vec<String> {
     let widths = WIDTHS.into_iter();
     let extraction = widths.flat_map(|width| {
-        [BRUTE_FORCE[0], PATCHES[0], SUPER_PATCHES[0], RIG_VERTICES, RIG_FACES, RIG_EDGES[0]]
+        [BRUTE_FORCE, PATCHES, SUPER_PATCHES, RIG_VERTICES, RIG_FACES, RIG_EDGES]
             .map(|source| prelude(width) + source)
     });
     extraction
@@ -44,13 +44,6 @@ fn plain() -> Vec<String> {
 fn sources_are_valid_without_optional_features() {
     for source in plain() {
         validate(&source, Capabilities::empty());
-    }
-}
-
-#[test]
-fn subgroup_variants_need_nothing_but_subgroups() {
-    for source in [BRUTE_FORCE[1], PATCHES[1], SUPER_PATCHES[1], RIG_EDGES[1]] {
-        validate(&(prelude(64) + source), Capabilities::SUBGROUP);
     }
 }
 
@@ -72,7 +65,14 @@ fn meshes() -> impl Iterator<Item = String> {
 #[test]
 fn mesh_shaders_need_nothing_but_subgroups() {
     for source in meshes() {
-        validate(&source, Capabilities::MESH_SHADER | Capabilities::SUBGROUP);
+        let module = validate(&source, Capabilities::MESH_SHADER | Capabilities::SUBGROUP);
+        // NVIDIA's driver 580 gives task and mesh shaders a wrong number of workgroups.
+        let binds = |arguments: &[naga::FunctionArgument]| {
+            arguments.iter().any(|argument| {
+                argument.binding == Some(naga::Binding::BuiltIn(naga::BuiltIn::NumWorkGroups))
+            })
+        };
+        assert!(!module.entry_points.iter().any(|entry| binds(&entry.function.arguments)));
     }
 }
 
@@ -123,7 +123,7 @@ macro_rules! check {
 
 #[test]
 fn structs_have_the_same_layout_on_both_sides() {
-    let patches = &(prelude(64) + PATCHES[0]);
+    let patches = &(prelude(64) + PATCHES);
     check!(patches, DoubleCone { center, apex_distance, axis, tan_squared });
     check!(patches, EdgePlanes { left, right });
     check!(patches, EdgeEnds { from_vertex, to_vertex, edge, edge_class });
@@ -142,6 +142,7 @@ fn structs_have_the_same_layout_on_both_sides() {
             segment_capacity,
             first_placement,
             most_instances,
+            row,
         }
     );
     check!(
@@ -196,7 +197,7 @@ fn counters_of_draws_have_the_same_layout_on_both_sides() {
 #[test]
 fn structs_of_rigs_have_the_same_layout_on_both_sides() {
     let [vertices, faces, edges] =
-        [RIG_VERTICES, RIG_FACES, RIG_EDGES[0]].map(|source| prelude(64) + source);
+        [RIG_VERTICES, RIG_FACES, RIG_EDGES].map(|source| prelude(64) + source);
     check!(
         &vertices,
         VertexInfluence { position, weight, carrier, first_offset, offset_end, is_last }
@@ -271,7 +272,7 @@ fn constants_are_the_same_on_both_sides() {
     let lanes = naga::Literal::U32(SEGMENTS_PER_WORKGROUP);
     assert_eq!(constant(TALLY, "SEGMENTS_PER_WORKGROUP"), lanes);
     for width in WIDTHS {
-        let source = prelude(width) + PATCHES[0];
+        let source = prelude(width) + PATCHES;
         assert_eq!(constant(&source, "WIDTH"), naga::Literal::U32(width));
         assert_eq!(parse(&source).entry_points[0].workgroup_size, [width, 1, 1]);
     }

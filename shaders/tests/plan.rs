@@ -88,6 +88,7 @@ fn check(plan: &DrawPlan<'_>, what: &str) {
     let mut found = Vec::new();
     for draw in &draws {
         let [x, y] = draw.grid;
+        assert_eq!(draw.work.row, x, "{what}: workgroups are numbered by it");
         assert!(
             x <= limits.row && y <= limits.row && x * y <= limits.workgroups,
             "{what}: {x}, {y}"

@@ -1,7 +1,7 @@
 //! Two passes: compute shaders find contour edges, and an indirect draw of them follows.
 
 use drypoint_shaders::{
-    BRUTE_FORCE, PATCHES, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS, prelude,
+    BRUTE_FORCE, PATCHES, PlanLimits, SUPER_PATCHES, Stage, TALLY, USUAL_WIDTH, prelude,
 };
 
 use crate::barrier::Use;
@@ -22,27 +22,24 @@ pub struct Extractor {
     tally: Pipeline,
 }
 
-/// Lanes in a workgroup.
-const WIDTH: u32 = 64;
-
 impl Extractor {
     /// Compiles all shaders: some tens of milliseconds.
     ///
     /// # Errors
     /// If the driver refuses a shader.
     pub fn new(device: &Device) -> Result<Self, Error> {
-        const { assert!(WIDTHS[1] == WIDTH, "one of those that sources are made for") };
         let limits = device.limits();
         let model = layouts::model(device)?;
         let extraction = layouts::extraction(device)?;
-        let found = |sources: [&str; 2], entry| {
-            let source = prelude(WIDTH) + sources[Subgroups::With as usize];
+        let found = |source: &str, entry| {
+            // Every device of Vulkan has workgroups of 128 lanes.
+            let source = prelude(USUAL_WIDTH) + source;
             Pipeline::compute(device, ("extraction", &source, entry), &[&model, &extraction])
         };
         let tally = layouts::tally(device)?;
         Ok(Self {
             limits: PlanLimits {
-                width: WIDTH,
+                width: USUAL_WIDTH,
                 row: limits.max_compute_work_group_count[0]
                     .min(limits.max_compute_work_group_count[1]),
                 edges: MOST_TESTS,

@@ -16,8 +16,7 @@ pub struct Gpu {
 }
 
 /// Features that extraction uses where they are there.
-pub const WANTED_FEATURES: wgpu::Features =
-    wgpu::Features::SUBGROUP.union(wgpu::Features::TIMESTAMP_QUERY);
+pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
 
 impl Gpu {
     /// The adapter that the system prefers for heavy work, with [`WANTED_FEATURES`] where it has them

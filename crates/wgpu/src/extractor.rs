@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use drypoint_shaders::{
-    BRUTE_FORCE, PATCHES, POSITIONS, PlanLimits, SUPER_PATCHES, Stage, Subgroups, TALLY, WIDTHS,
+    BRUTE_FORCE, PATCHES, POSITIONS, PlanLimits, SUPER_PATCHES, Stage, TALLY, USUAL_WIDTH, WIDTHS,
     Work, prelude,
 };
 
@@ -19,13 +19,11 @@ use crate::rig_pipelines::RigPipelines;
 pub struct ExtractorOptions {
     /// Lanes in a workgroup, a power of two from 32 to 256. What the device allows is the most it gets.
     pub width: u32,
-    /// Subgroup operations where the device has them.
-    pub subgroups: bool,
 }
 
 impl Default for ExtractorOptions {
     fn default() -> Self {
-        Self { width: 64, subgroups: true }
+        Self { width: USUAL_WIDTH }
     }
 }
 
@@ -43,7 +41,6 @@ pub struct Extractor {
     super_patches: wgpu::ComputePipeline,
     tally: wgpu::ComputePipeline,
     placing: wgpu::ComputePipeline,
-    subgroups: Subgroups,
     /// Made with the first rig.
     rig: OnceLock<Arc<RigPipelines>>,
 }
@@ -74,13 +71,10 @@ impl Extractor {
             let feature = "workgroups of 32 lanes";
             return Err(Error::MissingFeature { feature, what: "extraction" });
         };
-        checked(device, "the shaders of extraction", || Self::build(device, options, width))
+        checked(device, "the shaders of extraction", || Self::build(device, width))
     }
 
-    fn build(device: &wgpu::Device, options: &ExtractorOptions, width: u32) -> Self {
-        let has_subgroups = device.features().contains(wgpu::Features::SUBGROUP);
-        let subgroups =
-            if options.subgroups && has_subgroups { Subgroups::With } else { Subgroups::Without };
+    fn build(device: &wgpu::Device, width: u32) -> Self {
         let layout = |label, types: &[wgpu::BindingType]| {
             layout(device, label, wgpu::ShaderStages::COMPUTE, types)
         };
@@ -90,9 +84,8 @@ impl Extractor {
         let tally_layout = layout("totals", &[work, WRITE, WRITE, WRITE]);
         let placing_layout = layout("placed segments", &[READ, READ, READ, READ, WRITE]);
         let of_extraction = [Some(&model_layout), Some(&work_layout)];
-        let extraction = |sources: [&str; 2], entry: &str| {
-            let source = prelude(width) + sources[subgroups as usize];
-            pipeline(device, &of_extraction, &source, entry)
+        let extraction = |source: &str, entry: &str| {
+            pipeline(device, &of_extraction, &(prelude(width) + source), entry)
         };
         let limits = PlanLimits {
             width,
@@ -107,7 +100,6 @@ impl Extractor {
             tally: pipeline(device, &[None, Some(&tally_layout)], TALLY, "tally"),
             placing: pipeline(device, &[Some(&placing_layout)], POSITIONS, "place_segments"),
             device: device.clone(),
-            subgroups,
             rig: OnceLock::new(),
             model_layout,
             work_layout,
@@ -162,7 +154,7 @@ impl Extractor {
             return Ok(Arc::clone(known));
         }
         let made = checked(&self.device, "the shaders of rigs", || {
-            RigPipelines::build(&self.device, self.limits.width, self.subgroups)
+            RigPipelines::build(&self.device, self.limits.width)
         })?;
         Ok(Arc::clone(self.rig.get_or_init(|| Arc::new(made))))
     }

@@ -1,6 +1,6 @@
 //! Pipelines for what is loose of a rig.
 
-use drypoint_shaders::{RIG_EDGES, RIG_FACES, RIG_VERTICES, RigCounts, Subgroups, Work, prelude};
+use drypoint_shaders::{RIG_EDGES, RIG_FACES, RIG_VERTICES, RigCounts, Work, prelude};
 
 use crate::bindings::{READ, WRITE, layout, uniform};
 use crate::extractor::pipeline;
@@ -22,7 +22,7 @@ pub(crate) struct RigPipelines {
 }
 
 impl RigPipelines {
-    pub(crate) fn build(device: &wgpu::Device, width: u32, subgroups: Subgroups) -> Self {
+    pub(crate) fn build(device: &wgpu::Device, width: u32) -> Self {
         let make =
             |entry, source: &str, model: &[wgpu::BindingType], frame: &[wgpu::BindingType]| {
                 let layout = |types: &[wgpu::BindingType]| {
@@ -34,11 +34,10 @@ impl RigPipelines {
                 let pipeline = pipeline(device, &layouts, &(prelude(width) + source), entry);
                 RigPipeline { pipeline, model_layout, frame_layout }
             };
-        let edges = RIG_EDGES[subgroups as usize];
         Self {
             vertices: make("pose_vertices", RIG_VERTICES, &[READ; 3], &[READ, READ, WRITE]),
             faces: make("find_sides", RIG_FACES, &[READ; 2], &[READ, READ, READ, WRITE]),
-            edges: make("test_loose_edges", edges, &[READ], &[WRITE, READ, WRITE]),
+            edges: make("test_loose_edges", RIG_EDGES, &[READ], &[WRITE, READ, WRITE]),
         }
     }
 }

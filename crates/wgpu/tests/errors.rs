@@ -21,7 +21,7 @@ fn what_a_device_lacks_is_named() {
 
     // As wide as the device allows.
     let narrow = support::gpu_with(&|limits| limits.max_compute_invocations_per_workgroup = 128);
-    let options = ExtractorOptions { width: 256, ..ExtractorOptions::default() };
+    let options = ExtractorOptions { width: 256 };
     let extractor = Extractor::with_options(&narrow.device, &options).expect("shaders compile");
     assert_eq!(extractor.width(), 128);
 

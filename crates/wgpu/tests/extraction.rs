@@ -44,15 +44,12 @@ fn every_shape_is_as_brute_force_with_exact_predicates_says() {
         return;
     }
     let gpu = gpu();
-    for subgroups in [false, true] {
-        let options = ExtractorOptions { subgroups, ..ExtractorOptions::default() };
-        let extractor = Extractor::with_options(&gpu.device, &options).expect("shaders compile");
-        for shape in shapes::all() {
-            for levels in [Levels::One, Levels::Two] {
-                let set = patches(&shape.mesh, levels);
-                let what = format!("{}, {levels:?}, subgroups {subgroups}", shape.name);
-                check(&gpu, &extractor, &set, &placements(&shape.mesh), &what);
-            }
+    let extractor = Extractor::new(&gpu.device).expect("shaders compile");
+    for shape in shapes::all() {
+        for levels in [Levels::One, Levels::Two] {
+            let set = patches(&shape.mesh, levels);
+            let what = format!("{}, {levels:?}", shape.name);
+            check(&gpu, &extractor, &set, &placements(&shape.mesh), &what);
         }
     }
     support::expect_silence();
@@ -65,16 +62,13 @@ fn every_width_finds_the_same() {
     }
     let gpu = gpu();
     let mesh = shapes::torus_knot(3_000);
-    for width in [32, 128, 256] {
-        for subgroups in [false, true] {
-            let options = ExtractorOptions { width, subgroups };
-            let extractor =
-                Extractor::with_options(&gpu.device, &options).expect("shaders compile");
-            assert_eq!(extractor.width(), width);
-            for levels in [Levels::One, Levels::Two] {
-                let what = format!("{options:?}, {levels:?}");
-                check(&gpu, &extractor, &patches(&mesh, levels), &placements(&mesh), &what);
-            }
+    for width in [32, 64, 256] {
+        let options = ExtractorOptions { width };
+        let extractor = Extractor::with_options(&gpu.device, &options).expect("shaders compile");
+        assert_eq!(extractor.width(), width);
+        for levels in [Levels::One, Levels::Two] {
+            let what = format!("{options:?}, {levels:?}");
+            check(&gpu, &extractor, &patches(&mesh, levels), &placements(&mesh), &what);
         }
     }
     support::expect_silence();
@@ -89,7 +83,7 @@ fn any_extractor_of_the_device_records() {
     let gpu = gpu();
     let mesh = shapes::torus_knot(3_000);
     let extractors = [32, 256].map(|width| {
-        let options = ExtractorOptions { width, subgroups: false };
+        let options = ExtractorOptions { width };
         Extractor::with_options(&gpu.device, &options).expect("shaders compile")
     });
     // So many that a workgroup gets more patches than the narrower one has lanes.
@@ -192,30 +186,25 @@ fn what_does_not_fit_is_counted_and_not_written() {
     let mesh = shapes::torus_knot(3_000);
     let set = patches(&mesh, Levels::One);
     let all = &placements(&mesh)[..6];
-    for subgroups in [false, true] {
-        let options = ExtractorOptions { subgroups, ..ExtractorOptions::default() };
-        let extractor = Extractor::with_options(&gpu.device, &options).expect("shaders compile");
-        let model = Model::new(&extractor, &[&set]).expect("there is memory");
-        let roomy = Capacity { placements: 6, segments: 50_000 };
-        let mut contours = Contours::new(&extractor, &model, roomy).expect("there is memory");
-        let found =
-            extract(&gpu, &extractor, &mut contours, all, Method::Patches).expect("it fits");
-        for capacity in [0, 1, found.len() as u32 - 1] {
-            let tight = Capacity { segments: capacity, ..roomy };
-            let mut contours = Contours::new(&extractor, &model, tight).expect("there is memory");
-            let error = extract(&gpu, &extractor, &mut contours, all, Method::Patches);
-            assert_eq!(error, Err(Error::Overflow { needed: found.len() as u64, capacity }));
-            let statistics = contours.read_statistics(&gpu.queue).expect("the device is there");
-            assert_eq!(statistics.overflow(), Some(found.len() as u64));
-        }
-        let exact = Capacity { segments: found.len() as u32, ..roomy };
-        let mut contours = Contours::new(&extractor, &model, exact).expect("there is memory");
-        let again =
-            extract(&gpu, &extractor, &mut contours, all, Method::Patches).expect("it fits");
-        assert_eq!(again, found);
+    let extractor = Extractor::new(&gpu.device).expect("shaders compile");
+    let model = Model::new(&extractor, &[&set]).expect("there is memory");
+    let roomy = Capacity { placements: 6, segments: 50_000 };
+    let mut contours = Contours::new(&extractor, &model, roomy).expect("there is memory");
+    let found = extract(&gpu, &extractor, &mut contours, all, Method::Patches).expect("it fits");
+    for capacity in [0, 1, found.len() as u32 - 1] {
+        let tight = Capacity { segments: capacity, ..roomy };
+        let mut contours = Contours::new(&extractor, &model, tight).expect("there is memory");
+        let error = extract(&gpu, &extractor, &mut contours, all, Method::Patches);
+        assert_eq!(error, Err(Error::Overflow { needed: found.len() as u64, capacity }));
         let statistics = contours.read_statistics(&gpu.queue).expect("the device is there");
-        assert_eq!(statistics.overflow(), None);
+        assert_eq!(statistics.overflow(), Some(found.len() as u64));
     }
+    let exact = Capacity { segments: found.len() as u32, ..roomy };
+    let mut contours = Contours::new(&extractor, &model, exact).expect("there is memory");
+    let again = extract(&gpu, &extractor, &mut contours, all, Method::Patches).expect("it fits");
+    assert_eq!(again, found);
+    let statistics = contours.read_statistics(&gpu.queue).expect("the device is there");
+    assert_eq!(statistics.overflow(), None);
     support::expect_silence();
 }
 

@@ -80,20 +80,17 @@ fn every_rig_is_as_the_definition_says() {
         return;
     }
     let gpu = gpu();
-    for subgroups in [false, true] {
-        let options = ExtractorOptions { subgroups, ..ExtractorOptions::default() };
-        let extractor = Extractor::with_options(&gpu.device, &options).expect("shaders compile");
-        let mut rng = Rng::with_seed(21);
-        for subject in subjects() {
-            let (flat, usual): (Vec<Pose>, Vec<Pose>) =
-                poses(&subject.rig, &mut rng).into_iter().partition(is_flat);
-            let differing =
-                [usual, flat].map(|poses| check(&gpu, &extractor, &subject, &poses, &mut rng));
-            println!(
-                "{}, subgroups {subgroups}: {} edges within the margin differ, {} more of flattened poses",
-                subject.name, differing[0], differing[1]
-            );
-        }
+    let extractor = Extractor::new(&gpu.device).expect("shaders compile");
+    let mut rng = Rng::with_seed(21);
+    for subject in subjects() {
+        let (flat, usual): (Vec<Pose>, Vec<Pose>) =
+            poses(&subject.rig, &mut rng).into_iter().partition(is_flat);
+        let differing =
+            [usual, flat].map(|poses| check(&gpu, &extractor, &subject, &poses, &mut rng));
+        println!(
+            "{}: {} edges within the margin differ, {} more of flattened poses",
+            subject.name, differing[0], differing[1]
+        );
     }
     expect_silence();
 }
@@ -105,7 +102,7 @@ fn work_beyond_the_limits_is_split() {
         return;
     }
     let gpu = gpu_with(&|limits| limits.max_compute_workgroups_per_dimension = 3);
-    let options = ExtractorOptions { width: 32, subgroups: false };
+    let options = ExtractorOptions { width: 32 };
     let extractor = Extractor::with_options(&gpu.device, &options).expect("shaders compile");
     let mut rng = Rng::with_seed(22);
     for (name, rig) in [("tube", tube(24, 40, 1.0)), ("assembly", assembly())] {

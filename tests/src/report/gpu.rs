@@ -29,8 +29,6 @@ pub struct GpuRun {
 pub struct GpuReport {
     /// Lanes in a workgroup.
     pub width: u32,
-    /// Whether the device has subgroup operations, which are used then.
-    pub has_subgroups: bool,
     /// Extraction. The first is brute force.
     pub times: Vec<GpuTime>,
     /// Frames: extraction, and its lines drawn.
@@ -130,13 +128,11 @@ pub struct VulkanCounts {
     pub primitives: u64,
 }
 
-/// What the cost model is made of (TB24 §4.2), with shaders of one kind.
+/// What the cost model is made of (TB24 §4.2), with workgroups of one width.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GpuCalibration {
     /// Lanes in a workgroup.
     pub width: u32,
-    /// Whether by subgroup operations.
-    pub with_subgroups: bool,
     /// From brute force, and from patches of one edge.
     pub costs: Calibration,
     /// Milliseconds of brute force.

@@ -176,10 +176,9 @@ const VULKAN_IN_SOFTWARE: &[&str] = &[
     "primitives",
 ];
 const CALIBRATION: &[&str] =
-    &["lanes", "subgroups", "t_e", "t_P / t_e", "t_A / t_e", "brute force, ms", "patches, ms"];
+    &["lanes", "t_e", "t_P / t_e", "t_A / t_e", "brute force, ms", "patches, ms"];
 const CALIBRATION_IN_SOFTWARE: &[&str] = &[
     "lanes",
-    "subgroups",
     "t_e (software)",
     "t_P / t_e (software)",
     "t_A / t_e (software)",
@@ -252,7 +251,6 @@ fn calibration(calibration: &GpuCalibration) -> Vec<String> {
     let costs = &calibration.costs;
     vec![
         calibration.width.to_string(),
-        if calibration.with_subgroups { "yes" } else { "no" }.to_owned(),
         format!("{} ns", three(&costs.edge)),
         three(&costs.patch_test),
         three(&costs.accepted_patch),

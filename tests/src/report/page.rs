@@ -231,7 +231,6 @@ mod tests {
         });
         report.meshes[0].gpu = Some(GpuReport {
             width: 64,
-            has_subgroups: true,
             times: vec![time(BRUTE_FORCE, 1.0), time(OURS, 6.0), time(FLOOR, 2.0)],
             frames: vec![frame(BRUTE_FORCE), frame(OURS)],
         });
@@ -239,7 +238,7 @@ mod tests {
             Calibration { edge: one(0.0123), patch_test: one(1.5), accepted_patch: one(-9.0) };
         let (brute_force, patches) = (one(6.0), one(1.0));
         report.meshes[0].gpu_calibration =
-            vec![GpuCalibration { width: 32, with_subgroups: false, costs, brute_force, patches }];
+            vec![GpuCalibration { width: 32, costs, brute_force, patches }];
         report
     }
 

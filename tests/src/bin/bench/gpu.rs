@@ -138,7 +138,6 @@ pub(crate) fn measure(
     });
     Ok(Some(GpuReport {
         width: extractor.width(),
-        has_subgroups: gpu.device.features().contains(wgpu::Features::SUBGROUP),
         times: times.collect(),
         frames: frames::measure(gpu, &mut variants, mesh, options)?,
     }))

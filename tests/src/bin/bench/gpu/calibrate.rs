@@ -1,5 +1,5 @@
 //! What the cost model is made of, on a GPU (Tsiapkolis and Bénard, CGF 2024, §4.2): with workgroups of
-//! every width, with and without subgroup operations.
+//! every width.
 
 use drypoint_fusion::{CostModel, FusionParams};
 use drypoint_mesh::{Mesh, MeshAdjacency};
@@ -29,9 +29,9 @@ struct Round {
     patches: f64,
 }
 
-/// Shaders of one kind, with what they are measured by: brute force, patches of one edge, and patches.
+/// Workgroups of one width, with what they are measured by: brute force, patches of one edge, and patches.
 struct Subject<'a> {
-    options: ExtractorOptions,
+    width: u32,
     variants: Vec<Variant<'a>>,
     tested: Vec<GpuTested>,
     rounds: Vec<Round>,
@@ -61,9 +61,9 @@ pub(crate) fn measure(
     let seen = Seen::new(mesh, adjacency, &placements);
     let extractors = extractors(gpu).map_err(|error| error.to_string())?;
     let mut subjects = Vec::new();
-    for (options, extractor) in &extractors {
+    for extractor in &extractors {
         let mut subject = Subject {
-            options: *options,
+            width: extractor.width(),
             variants: Vec::new(),
             tested: Vec::new(),
             rounds: Vec::new(),
@@ -81,18 +81,14 @@ pub(crate) fn measure(
     Ok(subjects.iter().map(|subject| subject.calibration(placements.len())).collect())
 }
 
-/// Of all kinds that the device has.
-fn extractors(gpu: &Gpu) -> Result<Vec<(ExtractorOptions, Extractor)>, Error> {
-    let has_subgroups = gpu.device.features().contains(wgpu::Features::SUBGROUP);
+/// Of all widths that the device has.
+fn extractors(gpu: &Gpu) -> Result<Vec<Extractor>, Error> {
     let mut extractors = Vec::new();
-    for subgroups in [true, false].into_iter().filter(|&wanted| has_subgroups || !wanted) {
-        for width in WIDTHS {
-            let options = ExtractorOptions { width, subgroups };
-            let extractor = Extractor::with_options(&gpu.device, &options)?;
-            // Narrower ones are what the device gives where it does not allow as many lanes.
-            if extractor.width() == width {
-                extractors.push((options, extractor));
-            }
+    for width in WIDTHS {
+        let extractor = Extractor::with_options(&gpu.device, &ExtractorOptions { width })?;
+        // Narrower ones are what the device gives where it does not allow as many lanes.
+        if extractor.width() == width {
+            extractors.push(extractor);
         }
     }
     Ok(extractors)
@@ -130,8 +126,7 @@ impl Subject<'_> {
         };
         let of = |value: &dyn Fn(&Round) -> f64| Quartiles::of(self.rounds.iter().map(value));
         GpuCalibration {
-            width: self.options.width,
-            with_subgroups: self.options.subgroups,
+            width: self.width,
             costs: Calibration {
                 edge: of(&|round| 1e6 * edge(round)),
                 patch_test: of(&|round| patch_test(round) / edge(round)),
