@@ -49,14 +49,15 @@ pub struct PlanLimits {
     pub edges: u32,
 }
 
-/// Rounds of a workgroup's lanes in brute force: enough that starting it costs little.
-pub(crate) const ROUNDS: u32 = 8;
+/// Rounds of a workgroup's lanes in brute force: enough that starting it costs little, and no more than that where
+/// too few workgroups would be busy.
+pub(crate) const ROUNDS: [u32; 2] = [8, 32];
 
 /// Workgroups that a GPU should have before a workgroup gets more to do.
 const BUSY: u64 = 1024;
 
-/// Super-patches that are enough for a workgroup: they hold some ten patches each.
-const SUPER_PATCHES: u32 = 8;
+/// Super-patches for a workgroup: they hold some ten patches each, of which a fourth is tested.
+const SUPER_PATCHES: u32 = 32;
 
 /// What is to be done for `instances` of a model.
 #[derive(Clone, Copy, Debug)]
@@ -129,7 +130,7 @@ impl Plan<'_> {
     fn share(&self, stage: Stage, count: u32) -> u32 {
         let width = self.limits.width;
         let (most, least) = match stage {
-            Stage::Edges => return width * ROUNDS,
+            Stage::Edges => (width * ROUNDS[1], width * ROUNDS[0]),
             Stage::Patches => (width, width.div_ceil(8)),
             Stage::SuperPatches => (SUPER_PATCHES.min(width), 1),
         };

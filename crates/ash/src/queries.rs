@@ -57,7 +57,8 @@ pub struct Counts {
     pub compute_invocations: u64,
     /// Of vertex shaders.
     pub vertex_invocations: u64,
-    /// Lines or triangles that mesh shaders emit, or that are assembled from vertices.
+    /// Lines or triangles that mesh shaders emit, or that are assembled from vertices. Where a pass draws nothing, a
+    /// driver may count none (NVIDIA's 580).
     pub primitives: u64,
     /// From the beginning to the end, if the device has a clock.
     pub seconds: Option<f64>,

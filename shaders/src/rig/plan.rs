@@ -66,7 +66,7 @@ impl RigPlan<'_> {
         }
         if self.loose_edges > 0 {
             self.cut_loose(RigStep::Faces, counts.face_count, width, visit);
-            self.cut_loose(RigStep::LooseEdges, self.loose_edges, width * ROUNDS, visit);
+            self.cut_loose(RigStep::LooseEdges, self.loose_edges, width * ROUNDS[0], visit);
         }
         for (class, (layout, chunks)) in self.layout.classes.iter().zip(self.classes).enumerate() {
             let plan = Plan {

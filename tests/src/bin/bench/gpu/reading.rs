@@ -8,8 +8,8 @@ use super::Work;
 
 const SOURCE: &str = include_str!("reading.wgsl");
 
-/// Rounds of a workgroup's lanes, as many as brute force takes.
-const ROUNDS: u32 = 8;
+/// Rounds of a workgroup's lanes, as many as brute force takes where there are many instances.
+const ROUNDS: u32 = 32;
 
 /// Reads the planes of all edges, for each instance anew.
 pub(super) struct PlanesRead {
