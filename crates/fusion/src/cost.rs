@@ -46,11 +46,11 @@ impl CostModel {
     /// whole blocks, it lets edges move from patch to patch one by one.
     pub const CPU_SIMD: Self = Self { patch_test: 2.0, accepted_patch: 6.0, ..Self::PAPER };
 
-    /// `drypoint-wgpu`, from what its shaders read and not from times, which were not measured on hardware yet. A patch test reads 48 bytes and an edge test 32, once each and in the
-    /// order of memory, hence t_P; the paper measured 1.363. Edges of all survivors of a workgroup are
-    /// dealt out to its lanes one after the other, so that no block is left half empty, and a survivor costs
-    /// nothing beside its edges. Another 16 bytes are read for a contour edge, which is the same for any
-    /// patches.
+    /// `drypoint-wgpu`, from what its shaders read. A patch test reads 48 bytes and an edge test 32, once each and in
+    /// the order of memory, hence t_P; the paper measured 1.363. Edges of all survivors of a workgroup are dealt out to
+    /// its lanes one after the other, so that no block is left half empty, and a survivor costs nothing beside its
+    /// edges. Another 16 bytes are read for a contour edge, which is the same for any patches. On an NVIDIA H200 a
+    /// patch test takes as long as 3.5 edge tests, but patches for that are no faster (`docs/experiments.md`).
     pub const GPU: Self = Self { patch_test: 48.0 / 32.0, ..Self::PAPER };
 
     /// For a mesh workgroup of its own for each survivor, which emits at most 64 vertices and 126 primitives

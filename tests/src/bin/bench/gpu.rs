@@ -8,6 +8,8 @@ pub(crate) mod variants;
 
 pub(crate) mod calibrate;
 
+use std::time::{Duration, Instant};
+
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency};
 use drypoint_tests::report::{
     FLOOR, GpuReport, GpuRun, GpuTested, GpuTime, INSTANCES, Quartiles, Run,
@@ -58,6 +60,9 @@ pub(crate) fn run(gpu: &Gpu, run: Run) -> GpuRun {
     GpuRun { device: gpu.name(), is_software: gpu.is_software(), run }
 }
 
+/// After which clocks are as high as they get.
+const WARM_UP: Duration = Duration::from_millis(500);
+
 /// Times of passes, by waiting for each.
 struct Stopwatch<'a> {
     gpu: &'a Gpu,
@@ -67,6 +72,15 @@ struct Stopwatch<'a> {
 impl<'a> Stopwatch<'a> {
     fn new(gpu: &'a Gpu) -> Result<Self, Error> {
         Ok(Self { gpu, timer: Timer::new(&gpu.device, &gpu.queue)? })
+    }
+
+    /// Works for a while: a GPU that has idled takes several times as long at first.
+    fn warm_up(&mut self, work: &mut dyn Work, placements: &[Placement]) -> Result<(), Error> {
+        let start = Instant::now();
+        while start.elapsed() < WARM_UP {
+            self.time(work, placements)?;
+        }
+        Ok(())
     }
 
     /// Milliseconds of the GPU.
@@ -180,6 +194,9 @@ fn in_turn(
     rounds: u32,
 ) -> Result<Vec<GpuTime>, Error> {
     let mut watch = Stopwatch::new(gpu)?;
+    if let Some(work) = works.first_mut() {
+        watch.warm_up(*work, placements)?;
+    }
     let groups: Vec<&[Placement]> = std::iter::once(placements)
         .chain(placements.chunks(INSTANCES / viewpoints::DISTANCES.len()))
         .collect();

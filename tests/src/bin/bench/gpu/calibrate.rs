@@ -101,6 +101,9 @@ fn in_turn(
     rounds: u32,
 ) -> Result<(), Error> {
     let mut watch = Stopwatch::new(gpu)?;
+    if let Some(variant) = subjects.first_mut().and_then(|subject| subject.variants.first_mut()) {
+        watch.warm_up(variant, placements)?;
+    }
     for _ in 0..rounds {
         for subject in &mut *subjects {
             let mut time = |variant: usize| watch.time(&mut subject.variants[variant], placements);
