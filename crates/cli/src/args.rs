@@ -24,23 +24,12 @@ pub(crate) struct Cli {
 
 /// The built-in shapes, examples, and what the exit status means.
 fn after_help() -> String {
-    /// Most characters of a line.
-    const WIDTH: usize = 96;
-    let mut shapes = String::from(" ");
-    let mut column = 1;
-    for name in shapes::NAMES {
-        if column + name.len() + 2 > WIDTH {
-            shapes += "\n ";
-            column = 1;
-        }
-        shapes += &format!(" {name}");
-        column += name.len() + 1;
-    }
-    format!("{MODELS}\n{shapes}\n\n{EXAMPLES}")
+    let shapes = shapes::NAMES.join(", ");
+    format!("{MODELS} {shapes}.\n\n{EXAMPLES}")
 }
 
 const MODELS: &str = "\
-MODEL is an OBJ, PLY, STL, glTF or GLB file, or shape:NAME[:TRIANGLES] for a built-in shape, of
+MODEL is an OBJ, PLY, STL, glTF or GLB file, or shape:NAME[:TRIANGLES] for a built-in shape, of \
 20000 triangles unless told otherwise, where NAME is one of";
 
 const EXAMPLES: &str = "\
@@ -80,18 +69,18 @@ Examples:
   drypoint draw robot.glb --animation Walking --frames walk --fps 24 --view left
   drypoint draw part.stl --turntable 60 --frames turn --format png --elevation 20
 
-A model that can move is drawn at rest unless an animation poses it. All frames are drawn by one camera
-that holds what moves in all of them, or from one distance where it goes around the model. Beside the
+A model that can move is drawn at rest unless an animation poses it. All frames are drawn by one camera \
+that holds what moves in all of them, or from one distance where it goes around the model. Beside the \
 frames lies frames.json, by which the same command knows them again.
 
-In an SVG each class of lines is a group, and each path says of which edges it is made, or which pairs
-of faces cross there. Of a model with several parts, or with names of materials, it also says of which
+In an SVG each class of lines is a group, and each path says of which edges it is made, or which pairs \
+of faces cross there. Of a model with several parts, or with names of materials, it also says of which \
 part and which material, and ends where these do: those of the face in front.
 
-With --json prints one object: for each class of lines chains, segments, visible_length and
-hidden_length in pixels; of such a model the pixels of visible line of each class by the names in
-`parts` and in `materials`; and with --show patches or survivors in `patches` the numbers of edges,
-patches, super_patches, survivors and edges_tested from this view. With --frames: frames, drawn, kept
+With --json prints one object: for each class of lines chains, segments, visible_length and \
+hidden_length in pixels; of such a model the pixels of visible line of each class by the names in \
+`parts` and in `materials`; and with --show patches or survivors in `patches` the numbers of edges, \
+patches, super_patches, survivors and edges_tested from this view. With --frames: frames, drawn, kept \
 (they were there) and blank (of those drawn).")]
 pub(crate) struct DrawArgs {
     /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file with --model
@@ -169,12 +158,12 @@ Examples:
   drypoint patches bunny.obj -o bunny.patches --preset paper --bound mean --partition 512 --json
   drypoint extract bunny.patches --eye 0,0.1,2 --json
 
-With --json prints one object: edges, patches, super_patches, always_tested (edges in no patch),
-mean_half_angle and max_half_angle in degrees, mean_t in the file's unit, expected_cost in edge
-tests a view, build_seconds, peak_memory in bytes or null, and what was asked for: preset, profile,
+With --json prints one object: edges, patches, super_patches, always_tested (edges in no patch), \
+mean_half_angle and max_half_angle in degrees, mean_t in the file's unit, expected_cost in edge \
+tests a view, build_seconds, peak_memory in bytes or null, and what was asked for: preset, profile, \
 bound, levels, runtime.
 
-Patches of a model that can move are those of its rest pose; `drypoint extract --animation` builds some
+Patches of a model that can move are those of its rest pose; `drypoint extract --animation` builds some \
 for each of its rigid parts.")]
 pub(crate) struct PatchesArgs {
     /// Mesh file, or `shape:NAME[:TRIANGLES]`
@@ -203,13 +192,13 @@ Examples:
   drypoint extract bunny.patches --eye 0,0.1,2 --json
   drypoint extract robot.glb --animation Walking --time 0.5 --eye 3,2,9 --method patches
 
-Prints a pair of vertices a line, lower index first, sorted; what was tested goes to standard error.
-With --json prints one object: method, edges, patches, patches_tested, patches_accepted,
-super_patches, super_patches_tested, super_patches_accepted, edges_tested, contour_edges, contour.
-Vertices are counted from 0 in the file's own order (OBJ: v
-lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices
-at one position the first is named. In a pose of an animation vertices are one if they always are: then
-a pair may stand for two edges that part when the model moves, and edges and patches are those of all its
+Prints a pair of vertices a line, lower index first, sorted; what was tested goes to standard error. \
+With --json prints one object: method, edges, patches, patches_tested, patches_accepted, \
+super_patches, super_patches_tested, super_patches_accepted, edges_tested, contour_edges, contour. \
+Vertices are counted from 0 in the file's own order (OBJ: v \
+lines; STL: three a facet; glTF: as `drypoint info --vertices` lists them), and of several vertices \
+at one position the first is named. In a pose of an animation vertices are one if they always are: then \
+a pair may stand for two edges that part when the model moves, and edges and patches are those of all its \
 rigid parts, with the edges between them.")]
 pub(crate) struct ExtractArgs {
     /// Mesh file, `shape:NAME[:TRIANGLES]`, or a .patches file
@@ -240,8 +229,8 @@ pub(crate) struct ExtractArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Of a glTF file with skins, animations, morph targets, or meshes that are placed more than once, it also
-tells animations, instances, rigid_parts, rigid_shapes, and rigid_share: how much of the edges lies
+Of a glTF file with skins, animations, morph targets, or meshes that are placed more than once, it also \
+tells animations, instances, rigid_parts, rigid_shapes, and rigid_share: how much of the edges lies \
 between faces that move as one, and so can be grouped into patches.")]
 pub(crate) struct InfoArgs {
     /// Mesh file, or `shape:NAME[:TRIANGLES]`
