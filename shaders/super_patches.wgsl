@@ -2,7 +2,7 @@
 
 @group(0) @binding(3) var<storage, read> super_patches: array<Group>;
 
-// As edge_ends, edge_offsets and taken, of patches: no more of these than two lanes to the power of 16 hold.
+// As edge_ends, edge_offsets and taken, of patches.
 var<workgroup> patch_ends: array<u32, WIDTH>;
 var<workgroup> patch_offsets: array<u32, WIDTH>;
 var<workgroup> groups_taken: atomic<u32>;
@@ -26,24 +26,21 @@ fn super_patches_to_edges(lane: Lane, @builtin(workgroup_id) workgroup: vec3u) {
     let instance = work.first_instance + number / blocks;
     let first = (number % blocks) * work.items_per_workgroup;
     let end = min(first + work.items_per_workgroup, work.item_count);
-    // Once, but where the work was cut for wider workgroups.
-    for (var i = first; i < end; i += WIDTH) {
-        if i + lane.index < end {
-            test_super_patch(work.first_item + i + lane.index, instance);
+    // No more than the narrowest workgroup has lanes.
+    if lane.index < end - first {
+        test_super_patch(work.first_item + first + lane.index, instance);
+    }
+    workgroupBarrier();
+    if lane.index == 0u {
+        all_groups = atomicLoad(&groups_taken);
+    }
+    let all = workgroupUniformLoad(&all_groups);
+    for (var first_place = 0u; first_place < all / 512u; first_place += WIDTH) {
+        let place = first_place + lane.index;
+        if place < all / 512u {
+            test_patch(patch_offsets[super_patch_of(place, all % 512u)] + place, instance);
         }
-        workgroupBarrier();
-        if lane.index == 0u {
-            all_groups = atomicLoad(&groups_taken);
-            atomicStore(&groups_taken, 0u);
-        }
-        let all = workgroupUniformLoad(&all_groups);
-        for (var first_place = 0u; first_place < all / 512u; first_place += WIDTH) {
-            let place = first_place + lane.index;
-            if place < all / 512u {
-                test_patch(patch_offsets[super_patch_of(place, all % 512u)] + place, instance);
-            }
-            test_edges(lane);
-        }
+        test_edges(lane);
     }
     end_patches(lane);
     if lane.index == 0u {

@@ -1,5 +1,5 @@
 // Appends contour edges to the segments: collected in the workgroup, so that one atomic operation in memory makes
-// room for many. One for each subgroup that has any takes up to five times as long (docs/experiments.md).
+// room for many. One for each subgroup that has any takes five to six times as long (docs/experiments.md).
 
 const HIT_CAPACITY: u32 = 4u * WIDTH;
 

@@ -9,7 +9,7 @@ var<workgroup> edge_ends: array<u32, WIDTH>;
 var<workgroup> edge_offsets: array<u32, WIDTH>;
 var<workgroup> edge_placements: array<u32, WIDTH>;
 // Edges of the survivors so far, times 512, and the number of these: one atomic operation for both, so that their
-// edges follow one another in the order of the survivors.
+// edges follow one another in the order of the survivors. At most 256 lanes, each with 256 edges.
 var<workgroup> taken: atomic<u32>;
 var<workgroup> all_taken: u32;
 var<workgroup> patches_tested: atomic<u32>;

@@ -1,7 +1,7 @@
 //! Cuts work into dispatches that a device allows.
 
-use crate::Chunk;
 use crate::layout::Work;
+use crate::{Chunk, MAX_GROUP, MAX_PIECE, WIDTHS};
 
 /// How contour edges are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,6 +59,13 @@ const BUSY: u64 = 2048;
 
 /// Super-patches for a workgroup: they hold some ten patches each, of which a fourth is tested.
 const SUPER_PATCHES: u32 = 32;
+
+/// Shaders look at them in one round, and count survivors in nine bits and what these hold in the rest.
+const _: () = {
+    let most = WIDTHS[WIDTHS.len() - 1];
+    assert!(SUPER_PATCHES <= WIDTHS[0] && most < 1 << 9);
+    assert!(most as u64 * MAX_PIECE as u64 <= u32::MAX as u64 >> 9 && MAX_GROUP <= MAX_PIECE);
+};
 
 /// What is to be done for `instances` of a model.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use drypoint_fusion::{FusionParams, Levels, fuse};
 use drypoint_mesh::{EdgeFilter, MeshAdjacency, shapes};
 use drypoint_shaders::{
     BLOCK_PATCHES, Chunk, Content, Culling, Draw, DrawLimits, DrawPlan, MAX_GROUP, MAX_PIECE,
-    MeshShape, Method,
+    MeshShape, Method, Plan, PlanLimits, Stage, WIDTHS,
 };
 
 const SHAPE: MeshShape =
@@ -117,6 +117,76 @@ fn check(plan: &DrawPlan<'_>, what: &str) {
         plan.chunks.len(),
         "{what}: all chunks"
     );
+}
+
+/// The same of dispatches, for every width and few or many instances.
+#[test]
+fn each_item_of_each_instance_is_dispatched_once() {
+    for levels in [Levels::One, Levels::Two] {
+        let content = content(levels);
+        let chunks = content.chunks(4 * MAX_PIECE, MAX_PIECE);
+        for method in [Method::BruteForce, Method::Patches] {
+            for width in WIDTHS {
+                for (row, edges, instances) in
+                    [(3, 1 << 28, 5), (65_535, 1 << 28, 1), (65_535, 1 << 28, 40), (100, 3_000, 40)]
+                {
+                    let limits = PlanLimits { width, row, edges };
+                    let plan = Plan {
+                        chunks: &chunks,
+                        part_count: 2,
+                        method,
+                        instances,
+                        segment_capacity: 0,
+                        limits,
+                    };
+                    check_dispatches(&plan, &format!("{levels:?}, {method:?}, {limits:?}"));
+                }
+            }
+        }
+    }
+}
+
+fn check_dispatches(plan: &Plan<'_>, what: &str) {
+    let PlanLimits { width, row, .. } = plan.limits;
+    let mut found = Vec::new();
+    let mut count = 0;
+    plan.dispatches(&mut |dispatch| {
+        count += 1;
+        let (work, [x, y]) = (&dispatch.work, dispatch.grid);
+        assert!(x <= row && y <= row, "{what}: {x}, {y}");
+        assert_eq!(work.row, x, "{what}: workgroups are numbered by it");
+        let is_one_round = work.items_per_workgroup <= width;
+        assert!(dispatch.stage == Stage::Edges || is_one_round, "{what}: one item a lane");
+        let share = work.items_per_workgroup;
+        let blocks = work.item_count.div_ceil(share);
+        for number in (0..x * y).filter(|number| *number < blocks * work.instance_count) {
+            let first = number % blocks * share;
+            let items = first..(first + share).min(work.item_count);
+            let instance = work.first_instance + number / blocks;
+            let key = |item| (dispatch.chunk, work.part, work.first_item + item, instance);
+            found.extend(items.map(key));
+        }
+    });
+    assert!(count <= plan.most_dispatches(), "{what}: {count} dispatches");
+    let mut expected = Vec::new();
+    for (index, chunk) in plan.chunks.iter().enumerate() {
+        let mut expect = |part: u32, items: std::ops::Range<u32>| {
+            let of = |instance| items.clone().map(move |item| (index, part, item, instance));
+            expected.extend((0..plan.instances).flat_map(of));
+        };
+        match plan.method {
+            Method::BruteForce => {
+                chunk.parts.iter().for_each(|(part, edges)| expect(*part, edges.clone()));
+            }
+            Method::Patches if chunk.super_patches.is_empty() => {
+                expect(0, 0..chunk.patches.len() as u32);
+            }
+            Method::Patches => expect(0, 0..chunk.super_patches.len() as u32),
+        }
+    }
+    found.sort_unstable();
+    expected.sort_unstable();
+    assert!(found == expected, "{what}");
 }
 
 #[test]

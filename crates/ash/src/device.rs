@@ -116,7 +116,7 @@ impl Default for RequiredFeatures {
     }
 }
 
-/// What subgroup operations the shaders need, in task, mesh and compute stages.
+/// What subgroup operations the shaders need, in task and mesh stages.
 const SUBGROUP_OPERATIONS: vk::SubgroupFeatureFlags = vk::SubgroupFeatureFlags::from_raw(
     vk::SubgroupFeatureFlags::BASIC.as_raw()
         | vk::SubgroupFeatureFlags::BALLOT.as_raw()
@@ -326,9 +326,7 @@ impl Properties {
         if basic.limits.max_per_stage_descriptor_storage_buffers < STORAGE_BUFFERS {
             return lacks("11 storage buffers in a shader");
         }
-        let stages = vk::ShaderStageFlags::TASK_EXT
-            | vk::ShaderStageFlags::MESH_EXT
-            | vk::ShaderStageFlags::COMPUTE;
+        let stages = vk::ShaderStageFlags::TASK_EXT | vk::ShaderStageFlags::MESH_EXT;
         if !subgroups.supported_stages.contains(stages)
             || !subgroups.supported_operations.contains(SUBGROUP_OPERATIONS)
         {

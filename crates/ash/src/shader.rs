@@ -65,7 +65,7 @@ fn compile(
         .map_err(|error| invalid(error.emit_to_string(source)))?;
     let capabilities = Capabilities::MESH_SHADER | Capabilities::SUBGROUP;
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
-    validator.subgroup_stages(ShaderStages::COMPUTE | ShaderStages::TASK | ShaderStages::MESH);
+    validator.subgroup_stages(ShaderStages::TASK | ShaderStages::MESH);
     validator.subgroup_operations(SubgroupOperationSet::all());
     let info =
         validator.validate(&module).map_err(|error| invalid(error.emit_to_string(source)))?;

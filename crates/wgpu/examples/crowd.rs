@@ -120,6 +120,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("{}, {count} instances", gpu.name());
     for Measured { method, recording, extraction, statistics } in measured {
+        if let Some(needed) = statistics.overflow() {
+            return Err(format!("{needed} contour edges do not fit").into());
+        }
         println!(
             "{method:?}: {:.1?} to record, {:.1?} on the GPU; {} contour edges of {} tested",
             median(recording),

@@ -15,7 +15,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
 }
 
-/// Features that extraction uses where they are there.
+/// Features that are used where they are there: [`Timer`](crate::Timer) needs time stamps, and nothing else anything.
 pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
 
 impl Gpu {

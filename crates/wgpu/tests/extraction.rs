@@ -5,6 +5,7 @@ mod support;
 
 use drypoint_fusion::{Levels, PatchSet};
 use drypoint_mesh::{EdgeFilter, Mesh, MeshAdjacency, Viewpoint, shapes};
+use drypoint_shaders::{Content, Plan, PlanLimits};
 use drypoint_wgpu::{
     Capacity, Contours, Error, Extractor, ExtractorOptions, Gpu, Method, Model, PlacedContours,
     Placement,
@@ -87,13 +88,23 @@ fn any_extractor_of_the_device_records() {
         Extractor::with_options(&gpu.device, &options).expect("shaders compile")
     });
     // So many that a workgroup gets more patches than the narrower one has lanes.
-    let placements = vec![placements(&mesh)[0]; 400];
+    let placements = vec![placements(&mesh)[0]; 550];
+    let chunks = Content::new(&[&patches(&mesh, Levels::One)]).chunks(u32::MAX, u32::MAX);
+    let plan = Plan {
+        chunks: &chunks,
+        part_count: 1,
+        method: Method::Patches,
+        instances: 550,
+        segment_capacity: 0,
+        limits: PlanLimits { width: 256, row: 65_535, edges: 1 << 28 },
+    };
+    plan.dispatches(&mut |dispatch| assert!(dispatch.work.items_per_workgroup > 32));
     for levels in [Levels::One, Levels::Two] {
         let set = patches(&mesh, levels);
         let expected = Expected::new(&set, &placements);
         for [maker, recorder] in [[0, 1], [1, 0]] {
             let model = Model::new(&extractors[maker], &[&set]).expect("there is memory");
-            let capacity = Capacity { placements: 400, segments: 800_000 };
+            let capacity = Capacity { placements: 550, segments: 1_000_000 };
             let contours = Contours::new(&extractors[maker], &model, capacity);
             let mut contours = contours.expect("there is memory");
             let recorder = &extractors[recorder];
