@@ -32,6 +32,21 @@ struct Measured {
     statistics: Statistics,
 }
 
+impl Measured {
+    fn report(self) -> Result<(), Box<dyn Error>> {
+        let Self { method, recording, extraction, statistics } = self;
+        if let Some(needed) = statistics.overflow() {
+            return Err(format!("{needed} contour edges do not fit").into());
+        }
+        let [recording, extraction] = [recording, extraction].map(median);
+        let (found, tested) = (statistics.segments, statistics.edges_tested);
+        println!(
+            "{method:?}: {recording:.1?} to record, {extraction:.1?} on the GPU; {found} contour edges of {tested} tested"
+        );
+        Ok(())
+    }
+}
+
 /// The median.
 fn median(mut times: Vec<Duration>) -> Duration {
     times.sort_unstable();
@@ -119,17 +134,5 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     println!("{}, {count} instances", gpu.name());
-    for Measured { method, recording, extraction, statistics } in measured {
-        if let Some(needed) = statistics.overflow() {
-            return Err(format!("{needed} contour edges do not fit").into());
-        }
-        println!(
-            "{method:?}: {:.1?} to record, {:.1?} on the GPU; {} contour edges of {} tested",
-            median(recording),
-            median(extraction),
-            statistics.segments,
-            statistics.edges_tested
-        );
-    }
-    Ok(())
+    measured.into_iter().try_for_each(Measured::report)
 }
