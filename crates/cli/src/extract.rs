@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::args::{ExtractArgs, Method};
 use crate::gpu::{self, Api};
 use crate::memory::Work;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, tell};
 use crate::patches;
 use crate::rigged;
 use crate::source::{Source, holding, is_patches, load_patches};
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
     }
     let lines: String = found.contour.iter().map(|[a, b]| format!("{a} {b}\n")).collect();
     print(lines.as_bytes())?;
-    eprintln!(
+    tell(&format!(
         "{}: {} contour edges; {} of {} edges and {} of {} patches tested, {} accepted",
         found.method,
         found.contour_edges,
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &ExtractArgs) -> Result<(), String> {
         found.patches_tested,
         found.patches,
         found.patches_accepted
-    );
+    ));
     Ok(())
 }
 

@@ -25,7 +25,7 @@ pub(crate) fn stop_cleanly_on_ctrl_c() -> Result<(), String> {
         }
         // A progress bar may stand in this line of a terminal.
         let clear = if io::stderr().is_terminal() { "\r\x1b[2K" } else { "" };
-        eprintln!("{clear}drypoint: interrupted");
+        say(&format!("{clear}drypoint: interrupted"));
         std::process::exit(INTERRUPTED);
     };
     ctrlc::set_handler(stop).map_err(|error| format!("cannot watch for Ctrl-C: {error}"))
@@ -105,7 +105,12 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), String> {
 
 /// Prints one line to standard error, whatever line breaks a file's name may hold.
 pub(crate) fn tell(message: &str) {
-    eprintln!("{}", harmless(&message.replace(['\n', '\r'], " ")));
+    say(&harmless(&message.replace(['\n', '\r'], " ")));
+}
+
+/// Where standard error is closed or full there is nobody to tell, and the work goes on.
+fn say(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// A text with control characters spelled out, and those that turn the direction of writing: a name in a

@@ -89,8 +89,10 @@ fn timed<'a>(
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let [model, count] = &args[..] else { return Err("crowd MODEL.glb COUNT".into()) };
-    let count: u32 = count.parse()?;
+    let count = args.get(1).and_then(|count| count.parse().ok()).filter(|&count| count > 0);
+    let ([model, _], Some(count)) = (&args[..], count) else {
+        return Err("crowd MODEL.glb COUNT".into());
+    };
     let rig = io::read(model.as_ref())?.rig.ok_or("nothing in the model moves")?;
     if rig.animations().is_empty() {
         return Err("the model has no animation".into());

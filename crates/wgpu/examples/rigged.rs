@@ -17,15 +17,18 @@ use glam::{DAffine3, DVec3, Vec3};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let (rig, seconds) = match &args[..] {
-        [model, seconds, ..] => {
+    let (model, path) = match args.split_last() {
+        Some((last, model)) if last.ends_with(".png") => (model, last.as_str()),
+        _ => (&args[..], "contours.png"),
+    };
+    let (rig, seconds) = match model {
+        [] => (knot(), 0.3),
+        [model, seconds] => {
             let rig = io::read(model.as_ref())?.rig.ok_or("nothing in the model moves")?;
             (rig, seconds.parse()?)
         }
-        _ => (knot(), 0.3),
+        _ => return Err("rigged [MODEL.glb SECONDS] [OUT.png]".into()),
     };
-    let path =
-        args.last().filter(|path| path.ends_with(".png")).map_or("contours.png", |path| path);
 
     // Once for each rig: its rigid parts, and patches of what keeps its shape.
     let skin = Skin::new(&rig)?;

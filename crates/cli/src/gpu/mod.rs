@@ -60,7 +60,7 @@ impl Api {
     pub(crate) fn check_rig(self) -> Result<(), String> {
         match self {
             Self::Wgpu => Ok(()),
-            Self::Ash => Err("--method ash: finds no contour edges of --animation".to_owned()),
+            Self::Ash => Err("--method ash: cannot pose a model, as --animation asks; --method wgpu and patches can".to_owned()),
         }
     }
 

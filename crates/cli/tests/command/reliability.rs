@@ -90,6 +90,21 @@ fn a_device_that_takes_nothing_is_told() {
     check_failed(&output, &["standard output"]);
 }
 
+/// Nobody can be told, and the exit status says it all the same.
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_error_that_takes_nothing_changes_nothing() {
+    let bench = Bench::new();
+    bench.write("corner.obj", CORNER);
+    let code = |command: &str| {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        program(&bench, command).stderr(full).output().unwrap().status.code()
+    };
+    assert_eq!(code("extract corner.obj --eye 1,2,3"), Some(0));
+    assert_eq!(code("draw corner.obj --size 5000x5000 -o a.svg"), Some(0));
+    assert_eq!(code("draw missing.obj"), Some(1));
+}
+
 #[cfg(unix)]
 #[test]
 fn what_may_not_be_written_is_told_before_the_work() {
