@@ -16,7 +16,7 @@ use glam::dcamera::rh::{proj::directx::perspective, view::look_at_mat4};
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let mesh = match args.next() {
-        Some(path) => io::read(path.as_ref())?.mesh,
+        Some(path) => io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh,
         None => shapes::torus_knot(20_000),
     };
     let path = args.next().unwrap_or("contours.png".to_owned());

@@ -46,7 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(most) => preset.with_max_partition(Some(most.parse()?)),
         None => preset,
     };
-    let mesh = io::read(path.as_ref())?.mesh.normalized();
+    let mesh =
+        io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh.normalized();
     let adjacency = MeshAdjacency::new(&mesh);
     let go_on = |_| ControlFlow::Continue(());
     let set = fuse(&mesh, &adjacency, EdgeFilter::Convex, &params, &go_on)?;

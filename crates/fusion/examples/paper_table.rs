@@ -28,7 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if sizes.is_empty() {
         sizes = ["512", "1024", "2048", "4096"].map(String::from).to_vec();
     }
-    let mesh = io::read(path.as_ref())?.mesh.normalized();
+    let mesh =
+        io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh.normalized();
     let adjacency = MeshAdjacency::new(&mesh);
     let viewpoints = far_viewpoints();
     println!(

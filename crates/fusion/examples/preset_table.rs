@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn mesh(path: &str) -> Result<Mesh, Box<dyn std::error::Error>> {
     let Some(shape) = path.strip_prefix("shape:") else {
-        return Ok(io::read(path.as_ref())?.mesh);
+        return Ok(io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh);
     };
     let (name, triangles) = shape.split_once(':').ok_or("shape:NAME:TRIANGLES is wanted")?;
     Ok(shapes::by_name(name, triangles.parse()?).ok_or("no such shape")?)

@@ -93,7 +93,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ([model, _], Some(count)) = (&args[..], count) else {
         return Err("crowd MODEL.glb COUNT".into());
     };
-    let rig = io::read(model.as_ref())?.rig.ok_or("nothing in the model moves")?;
+    let rig = io::read(model.as_ref())
+        .map_err(|error| format!("{model}: {error}"))?
+        .rig
+        .ok_or("nothing in the model moves")?;
     if rig.animations().is_empty() {
         return Err("the model has no animation".into());
     }

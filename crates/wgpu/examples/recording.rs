@@ -18,7 +18,7 @@ const FRAMES: usize = 2_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mesh = match std::env::args().nth(1) {
-        Some(path) => io::read(path.as_ref())?.mesh,
+        Some(path) => io::read(path.as_ref()).map_err(|error| format!("{path}: {error}"))?.mesh,
         None => shapes::torus_knot(20_000),
     };
     let adjacency = MeshAdjacency::new(&mesh);

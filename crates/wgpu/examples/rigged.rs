@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (rig, seconds) = match model {
         [] => (knot(), 0.3),
         [model, seconds] => {
-            let rig = io::read(model.as_ref())?.rig.ok_or("nothing in the model moves")?;
+            let rig = io::read(model.as_ref())
+                .map_err(|error| format!("{model}: {error}"))?
+                .rig
+                .ok_or("nothing in the model moves")?;
             (rig, seconds.parse()?)
         }
         _ => return Err("rigged [MODEL.glb SECONDS] [OUT.png]".into()),

@@ -84,7 +84,7 @@ struct App<S: Show> {
 /// Opens a window, and returns when it was closed.
 pub(crate) fn run<S: Show>(common: &AppArgs, args: S::Args) -> Result<(), Box<dyn Error>> {
     let mesh = match &common.model {
-        Some(path) => io::read(path)?.mesh,
+        Some(path) => io::read(path).map_err(|error| format!("{}: {error}", path.display()))?.mesh,
         None => shapes::torus_knot(20_000),
     };
     if mesh.triangles().is_empty() {
