@@ -96,7 +96,7 @@ pub const INK: &str = concat!(include_str!("../shared/stroke.wgsl"), include_str
 pub const WIDTHS: [u32; 4] = [32, 64, 128, 256];
 
 /// The width where nobody chooses. On an NVIDIA H200 256 lanes are a tenth faster for brute force and for small models
-/// on one level, and take half as long again on two.
+/// on one level, some hundredths slower for large ones and on two levels, and take twice the memory of a workgroup.
 pub const USUAL_WIDTH: u32 = 128;
 
 /// What goes before [`BRUTE_FORCE`], [`PATCHES`], [`SUPER_PATCHES`] and those of rigs: lanes in a workgroup, one of

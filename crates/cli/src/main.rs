@@ -28,6 +28,7 @@ use clap::error::ErrorKind;
 use args::{Cli, Command};
 
 fn main() -> ExitCode {
+    memory::remember_start();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return explain(&error),

@@ -1,6 +1,7 @@
 //! How much memory a command will need, so that one that cannot end well says so before it begins.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use drypoint_mesh::io::{self, Estimate};
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
@@ -114,22 +115,40 @@ fn free() -> Option<u64> {
     (free > 0).then_some(free)
 }
 
-/// Bytes that `ulimit -v` leaves to the process, if it sets a limit: beside what is taken, and what each
-/// thread reserves for a heap and a stack of its own. Two more than work, for progress and for Ctrl-C.
+/// Addresses that the process took before it had threads.
+static AT_START: OnceLock<Option<u64>> = OnceLock::new();
+
+/// To be called before there are threads: what these reserve later is not to be counted twice.
+pub(crate) fn remember_start() {
+    AT_START.get_or_init(addresses_taken);
+}
+
+/// Bytes that `ulimit -v` leaves to the process, if it sets a limit: beside what it began with, or has taken by now,
+/// and what each thread reserves for a heap and a stack of its own. Two more than work, for progress and for Ctrl-C.
 #[cfg(target_os = "linux")]
 fn address_space() -> Option<u64> {
     const THREAD: u64 = (64 + 8) << 20;
     let threads = rayon::current_num_threads() as u64 + 2;
     let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;
+    let at_start = AT_START.get_or_init(addresses_taken).as_ref()?;
+    Some(limit.saturating_sub((at_start + THREAD * threads).max(addresses_taken()?)))
+}
+
+#[cfg(target_os = "linux")]
+fn addresses_taken() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: u64 = pages.split(' ').next()?.parse().ok()?;
-    let taken = pages * rustix::param::page_size() as u64;
-    Some(limit.saturating_sub(taken + THREAD * threads))
+    Some(pages * rustix::param::page_size() as u64)
 }
 
 /// Elsewhere a limit is set by other means, or binds nobody.
 #[cfg(not(target_os = "linux"))]
 fn address_space() -> Option<u64> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+fn addresses_taken() -> Option<u64> {
     None
 }
 
